@@ -23,7 +23,7 @@ pub enum Code {
     UnreadableSchema,
     /// Messages that do not fit their schema, skipped.
     UndecodableMessage,
-    /// A file of a split recording that is named but absent.
+    /// A file of a split recording that is named but absent, or a source of many logs that leads to none.
     MissingFile,
     /// A file beside a log that differs from the one that the log carries, which counts; or one in it that differs from
     /// what was written there.
@@ -40,7 +40,7 @@ pub enum Code {
     OtherTime,
     /// Joints that move before their plan: plan and measurement are swapped, or clocks differ.
     BeforePlan,
-    /// Runs to compare whose measurements differ in noise or rate.
+    /// Runs to compare whose measurements differ in noise or rate, or that were analysed otherwise.
     MeasuredOtherwise,
     /// A machine that stood while its plan went on.
     Stopped,
@@ -48,7 +48,7 @@ pub enum Code {
     UnusableStamp,
     /// Samples with the stamp of their predecessor, dropped.
     DuplicateStamp,
-    /// Samples logged out of order, sorted.
+    /// Samples logged, or runs given, out of order, sorted.
     Reordered,
     /// The clock jumped backwards; the run was split there.
     ClockJump,
@@ -102,7 +102,7 @@ pub enum Code {
     MachineChanged,
     /// Logs among many that cannot be analysed.
     UnreadableLog,
-    /// Runs among many that name no machine.
+    /// Runs among many that name no machine, or machines whose names are spelt in two ways.
     UnknownMachine,
     /// Runs among many that do not say when they were.
     Undated,

@@ -30,7 +30,7 @@ const RATE_HZ: f64 = 100.0;
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Logs of runs of one machine, each a file or a bag directory; the plan is that of the last
+    /// Logs of runs of one machine, each a file or a bag directory, in their order where their stamps say no date; the plan is that of the last
     #[arg(required = true, value_name = "RUN")]
     logs: Vec<PathBuf>,
 

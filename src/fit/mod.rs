@@ -44,7 +44,7 @@ pub use excited::is_excitation;
 pub use held_out::HeldOut;
 pub use learn::{
     AFTER_S, Character, JointStep, Learning, Learnt, MORE_ERROR, Oscillation, Room, SHARE, Stalled, Step,
-    Trial, learn,
+    Stop, Trial, learn,
 };
 pub use model::{Model, STEP_S};
 pub use outcome::{

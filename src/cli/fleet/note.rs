@@ -6,7 +6,7 @@ use super::{CliError, Outcome, Run, answers::date, console::Console};
 use crate::{
     remark::Remarks,
     render::fleet as words,
-    workflow::fleet::{Note, Notes, note, notes},
+    workflow::fleet::{Note, Notes, note, notes, take_back},
 };
 
 /// What was done to a machine, and when; without WHAT, all that is noted
@@ -32,6 +32,10 @@ pub(super) struct Args {
     #[arg(long, value_name = "JOINT", requires = "what")]
     joint: Option<String>,
 
+    /// Take back what was noted in these words
+    #[arg(long, requires = "what")]
+    remove: bool,
+
     /// Print what is noted as one JSON document
     #[arg(long)]
     json: bool,
@@ -48,7 +52,11 @@ impl Run for Args {
                 ));
             }
             let one = Note { at_us, machine: machine.clone(), joint: self.joint.clone(), what };
-            made = Some(note(&self.dataset, &one)?);
+            if self.remove {
+                take_back(&self.dataset, &one)?;
+            } else {
+                made = Some(note(&self.dataset, &one)?);
+            }
         }
         let found = Notes::of(&notes(&self.dataset, self.machine.as_deref())?);
         console.answer(

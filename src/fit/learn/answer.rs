@@ -44,10 +44,12 @@ pub(super) struct Answer {
     pub(super) measured_rad: Vec<f64>,
     /// By how much the measurement was shifted, rad; zero if it was not.
     pub(super) shifted_rad: f64,
-    /// Whether anything was.
-    seen: Vec<bool>,
+    /// Whether anything was, and may be learnt from.
+    pub(super) seen: Vec<bool>,
+    /// For how long the plan moves and nothing was measured, s.
+    pub(super) unseen_s: f64,
     /// What the joint is off by after the plan, as far as it was measured and for four seconds at most, rad.
-    after_rad: Vec<f64>,
+    pub(super) after_rad: Vec<f64>,
 }
 
 impl Answer {
@@ -70,6 +72,7 @@ impl Answer {
             ..Self::default()
         };
         made.shift(planned);
+        made.unseen_s = made.unseen_s(planned);
         made.fill(planned);
         let end_rad = planned.last().map_or(0.0, |planned| planned.0) + made.shifted_rad;
         let after = (steps..steps + steps_in(AFTER_S)).map_while(|k| measured.at(at_s(k)));
@@ -113,7 +116,7 @@ impl Answer {
 
     /// Where nothing was measured, the error is that before and after it: as long as the plan rests, and fading from where
     /// it moves.
-    fn fill(&mut self, planned: &[(f64, f64)]) {
+    pub(super) fn fill(&mut self, planned: &[(f64, f64)]) {
         let error_rad = self.error_rad(planned);
         let n = error_rad.len();
         let mut from = 0;
@@ -144,8 +147,7 @@ impl Answer {
         if self.shifted_rad == 0.0 { 0.0 } else { model.offset_rad }
     }
 
-    /// For how long the plan moves and nothing was measured, s.
-    pub(super) fn unseen_s(&self, planned: &[(f64, f64)]) -> f64 {
+    fn unseen_s(&self, planned: &[(f64, f64)]) -> f64 {
         let unseen = (0..planned.len()).filter(|&k| !self.seen[k] && moves(planned, k));
         unseen.count() as f64 * STEP_S
     }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{
-    super::{FitError, JointFit, Model, model::STEP_S},
+    super::{FitError, JointFit, model::STEP_S},
     JointStep, Learning, Room, SHARE, Step, Trial,
     answer::Answer,
     correct::{
@@ -14,7 +14,9 @@ use super::{
     part::is_part,
     shape::{Wanted, shaped},
     spoilt::{Left, unspoilt},
+    spread::{compared, spread_rad},
     stalled::stalled,
+    stop::Stop,
 };
 use crate::{
     math::{deviation, lowpass},
@@ -40,9 +42,6 @@ const KEPT_HZ: f64 = 8.0;
 
 /// A part of another run's correction that differs by more is told, rad.
 const TOLD_RAD: f64 = 0.1 * DEGREE_RAD;
-
-/// Errors are compared below this, Hz.
-const COMPARED_HZ: f64 = 1.5;
 
 /// An error that is larger than the best so far by this factor has grown; so has one that is larger by less, and by so much, rad.
 const GROWN: f64 = 1.1;
@@ -77,6 +76,7 @@ pub(super) struct Joint<'a> {
     answers: Vec<Answer>,
     /// What was added to the plan in each run, rad.
     sent: Vec<Vec<f64>>,
+    stop: Option<Stop>,
     /// Whether the newest run has little to do with the plan.
     astray: bool,
     pub(super) oscillation: Option<Oscillation>,
@@ -89,7 +89,9 @@ impl<'a> Joint<'a> {
         planned.pop();
         let from_s = track.t_s().first().copied().unwrap_or_default();
         let answer = |(run, trial): (usize, &Trial)| Answer::of(run, trial, track.name(), from_s, &planned);
-        let answers: Vec<Answer> = runs.iter().enumerate().filter_map(answer).collect();
+        let mut answers: Vec<Answer> = runs.iter().enumerate().filter_map(answer).collect();
+        let stop = Stop::of(&planned, &answers);
+        stop.iter().for_each(|stop| answers.iter_mut().for_each(|run| stop.unlearnt(run, &planned)));
         let sent = answers.iter().map(|run| run.correction_rad(&planned)).collect();
         let mut workspace = Workspace::default();
         let astray = answers.last().is_some_and(|run| is_astray(&planned, run, fit, &mut workspace));
@@ -104,6 +106,7 @@ impl<'a> Joint<'a> {
             planned,
             answers,
             sent,
+            stop,
             astray,
             oscillation,
             workspace,
@@ -143,9 +146,10 @@ impl<'a> Joint<'a> {
             spread_rad: None,
             most_rad,
             cut_off_hz: 0.0,
-            unseen_s: self.answers.last().map_or(0.0, |run| run.unseen_s(&self.planned)),
+            unseen_s: self.answers.last().map_or(0.0, |run| run.unseen_s),
             shifted_rad: self.answers.last().map_or(0.0, |run| run.shifted_rad),
             stalled: stalled(&self.sent, &errors, free),
+            stop: self.stop,
             correction: nothing,
         };
         let Some(fit) = self.fit.filter(|_| !untouched && !free.is_empty() && settings.gain > 0.0) else {
@@ -162,12 +166,12 @@ impl<'a> Joint<'a> {
         let frequency_hz = self.oscillation.map_or(f64::INFINITY, |found| found.frequency_hz);
         let manner = Manner::new(&fit.model, character, frequency_hz, most_rad);
         made.cut_off_hz = manner.cut_off_hz;
-        made.spread_rad = self.spread_rad(&fit.model);
+        made.spread_rad = spread_rad(&self.answers, &self.sent, &fit.model, &mut self.workspace);
         // Where runs differ by themselves, a larger correction that gained nothing tells of no limit.
         let spread_rad = made.spread_rad.unwrap_or(0.0);
         made.stalled.retain(|held| spread_rad < DIFFERS * held.error_rad);
         let fade = fade(self.planned.len(), free);
-        let (step, wanted_rad) = if let Some(from) = kept {
+        let (step, mut wanted_rad) = if let Some(from) = kept {
             let (from, _) = unspoilt(from, &self.sent, &self.whole_rad());
             let (mut kept, mut but) = (self.sent[from].clone(), None);
             // Also of a command that is kept as a whole, not what left more error than less of it.
@@ -198,6 +202,7 @@ impl<'a> Joint<'a> {
             faded(&mut wanted_rad, &fade);
             (step, wanted_rad)
         };
+        self.stop.iter().for_each(|stop| stop.relieved(&mut wanted_rad, &self.planned));
         let (cut_off_hz, room) = match step {
             Step::Kept { .. } => (KEPT_HZ, room(self.name).and_then(Room::of_sent)),
             _ => (finished_hz(&manner), room(self.name)),
@@ -219,17 +224,6 @@ impl<'a> Joint<'a> {
     /// What each run was off by, also after the plan, rad.
     fn whole_rad(&self) -> Vec<Vec<f64>> {
         self.answers.iter().map(|run| run.whole_rad(&self.planned)).collect()
-    }
-
-    /// What the last run and one before it differ by though the model says that they should not, rad: one in which the same
-    /// was sent, if there is one, for then the model matters little.
-    fn spread_rad(&mut self, model: &Model) -> Option<f64> {
-        let (last, others) = self.answers.split_last()?;
-        let before = others.iter().rfind(|run| alike(run, last)).or(others.last())?;
-        let before_rad = unexplained_rad(before, model, &mut self.workspace);
-        let last_rad = unexplained_rad(last, model, &mut self.workspace);
-        let difference_rad: Vec<f64> = last_rad.iter().zip(&before_rad).map(|(a, b)| a - b).collect();
-        Some(compared(&difference_rad) / std::f64::consts::SQRT_2)
     }
 
     /// The correction before it is made to fit its plan; `within` gives what is left of one that is.
@@ -264,7 +258,8 @@ impl<'a> Joint<'a> {
                 first(&fit.model, manner, (planned, fade), newest, fit.held_out_r2, workspace);
             return (Step::First { model_weight }, scaled(wanted, gain));
         }
-        let (from, trust) = trusted(rms_rad);
+        let follow = settings.follow && manner.character == Character::Calm;
+        let (from, trust) = if follow { (answers.len() - 1, 1.0) } else { trusted(rms_rad) };
         let (from, trust) = match unspoilt(from, sent, &whole) {
             // One correction may be mended by the next; twice is enough.
             (_, 0 | 1) => (from, trust),
@@ -330,18 +325,6 @@ fn is_astray(
         fit.trusted() && moves && left_rad < EXPLAINED * error_rad
     };
     error_rad > CAP_RAD.max(FOLLOWS * asked_rad) && !fit.is_some_and(slow)
-}
-
-/// Whether the same was sent.
-fn alike(a: &Answer, b: &Answer) -> bool {
-    a.sent.iter().zip(&b.sent).all(|(a, b)| (a.0 - b.0).abs() < NONE_RAD)
-}
-
-/// Size of an error below [`COMPARED_HZ`], rad.
-fn compared(error_rad: &[f64]) -> f64 {
-    let mut slow = error_rad.to_vec();
-    lowpass(&mut slow, COMPARED_HZ, STEP_S);
-    rms(&slow)
 }
 
 fn grown(now_rad: f64, best_rad: f64) -> bool {

@@ -8,7 +8,9 @@ mod oscillation;
 mod part;
 mod shape;
 mod spoilt;
+mod spread;
 mod stalled;
+mod stop;
 
 use std::ops::Range;
 
@@ -17,6 +19,7 @@ pub use oscillation::{Character, Oscillation};
 pub use shape::{Room, SHARE};
 pub use spoilt::MORE_ERROR;
 pub use stalled::Stalled;
+pub use stop::Stop;
 
 use super::{
     Fit, FitError,
@@ -51,11 +54,13 @@ pub struct Learning {
     /// Whether the only run is the first of a machine that has changed: its correction was made for another one, and the next
     /// is a first one again.
     pub anew: bool,
+    /// Whether the machine goes on changing one way: corrections go on from the newest run, whatever was better before.
+    pub follow: bool,
 }
 
 impl Default for Learning {
     fn default() -> Self {
-        Self { gain: 1.0, most_rad: None, most_m: None, keep: None, anew: false }
+        Self { gain: 1.0, most_rad: None, most_m: None, keep: None, anew: false, follow: false }
     }
 }
 
@@ -133,6 +138,8 @@ pub struct JointStep {
     pub shifted_rad: f64,
     /// Where a larger correction gained nothing: the smaller one is taken again there.
     pub stalled: Vec<Stalled>,
+    /// Where something holds it, whatever is sent.
+    pub stop: Option<Stop>,
     /// Correction, rad, its speed, rad/s, and acceleration, rad/s², every [`STEP_S`] from the plan's first sample.
     pub correction: Vec<[f64; 3]>,
 }

@@ -168,7 +168,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     }
 }
 
-fn is_place(text: &str) -> bool {
+pub(super) fn is_place(text: &str) -> bool {
     PLACE.iter().any(|place| text.eq_ignore_ascii_case(place))
 }
 

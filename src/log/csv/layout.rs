@@ -7,7 +7,7 @@ use super::{
     by_meaning::plan_by_error,
     column::{find, present},
     head::Head,
-    label::Label,
+    label::{Label, is_place},
     pairing::{Draft, Partners, by_last_part, plan_beside_measured, without_shared_words},
     unit::{Measure, Unit},
 };
@@ -147,12 +147,31 @@ pub(super) fn lay_out(
         );
         remarks.add(Code::NotSupported, left.len() as u64, message);
     }
+    if drafts.iter().all(|draft| !draft.stated) {
+        without_lengths(head, labels, |column| taken(column) || explicit.contains(column), remarks);
+    }
     let mut used = BTreeSet::new();
     let mut all = uses.iter().map(|one| one.column).chain(interfaces.iter().map(|one| one.column));
     if let Some(column) = all.find(|column| !used.insert(*column)) {
         return Err(CsvError::SameColumn { column: head.names[column].clone(), number: column + 1 });
     }
     Ok(Layout { joints: joints.into_iter().map(|(_, name)| name).collect(), uses, interfaces })
+}
+
+/// In a table whose columns say no side, lengths may be joints that slide or anything else: what is left out is said.
+fn without_lengths(head: &Head, labels: &[Label], taken: impl Fn(&usize) -> bool, remarks: &mut Remarks) {
+    let may_slide =
+        |label: &Label| label.is_joint && measures(label, Measure::Length) && !is_place(&label.joint);
+    let left = || (0..labels.len()).filter(|column| may_slide(&labels[*column]) && !taken(column));
+    let Some((column, label)) = left().next().map(|column| (column, &labels[column])) else { return };
+    let message = format!(
+        "columns of lengths whose names are none of joints that slide, such as {:?}, left out; import takes one with \
+         --slides {}={}",
+        head.names[column],
+        label.joint,
+        label.unit.map_or("mm", |unit| unit.name)
+    );
+    remarks.add(Code::Guessed, left().count() as u64, message);
 }
 
 fn measures(label: &Label, measure: Measure) -> bool {

@@ -27,6 +27,7 @@ pub(super) mod recording;
 mod repeated;
 mod samples;
 mod select_topics;
+mod sender;
 mod spoilt;
 mod stopped;
 mod time_base;

@@ -1,5 +1,6 @@
 //! Values that are slower than their log, of a sensor or of a planner: each is written again until the next one comes.
 
+use super::sender::{sampled, smooth};
 use crate::{
     remark::{Code, Remarks},
     series::{Series, Track, rounding, split_at_gaps},
@@ -14,7 +15,7 @@ const MOST: f64 = 0.95;
 const UNEVEN: usize = 5;
 /// Longest time for which a sample of a plan is held, s; of what was sent, which goes from target to target only where its plan
 /// does.
-const LONGEST_S: f64 = 0.2;
+const LONGEST_S: f64 = 0.3;
 const LONGEST_SENT_S: f64 = 0.5;
 /// Rows that are looked at first.
 const HEAD: usize = 4000;
@@ -27,28 +28,31 @@ pub(super) fn of_sides(
     remarks: &mut Remarks,
 ) {
     let longest_s = if is_sent { LONGEST_SENT_S } else { LONGEST_S };
-    let is_sampled = |plan: &Track, fresh: &Track| is_sampled(plan, fresh, longest_s);
-    of_side(planned, is_sampled, ["planned", "its planner", "interpolated"], remarks);
-    of_side(measured, |_, _| true, ["measured", "a sensor", "not judged"], remarks);
+    of_side(planned, |plan| sent(plan, longest_s), ["planned", "its planner", "interpolated"], remarks);
+    of_side(measured, fresh, ["measured", "a sensor", "not judged"], remarks);
 }
 
 /// The same of what was sent: sent again as it is logged, it would come late and in steps.
 pub(super) fn of_command(command: &mut Series, remarks: &mut Remarks) {
-    let is_sampled = |sent: &Track, fresh: &Track| is_sampled(sent, fresh, LONGEST_SENT_S);
-    of_side(command, is_sampled, ["commanded", "its sender", "interpolated"], remarks);
+    of_side(
+        command,
+        |track| sent(track, LONGEST_SENT_S),
+        ["commanded", "its sender", "interpolated"],
+        remarks,
+    );
 }
 
-/// `is_so`: whether what is left of a track, the second, is what there was of it.
+/// `of`: what there was of a track, if it is held.
 fn of_side(
     series: &mut Series,
-    is_so: impl Fn(&Track, &Track) -> bool,
+    of: impl Fn(&Track) -> Option<Track>,
     [side, source, between]: [&str; 3],
     remarks: &mut Remarks,
 ) {
     let (mut dropped, mut names) = (0, Vec::new());
     for track in &mut series.tracks {
-        let Some(fresh) = fresh(track).filter(|fresh| is_so(track, fresh)) else { continue };
-        dropped += track.len() - fresh.len();
+        let Some(fresh) = of(track) else { continue };
+        dropped += track.len().saturating_sub(fresh.len());
         names.push(track.name().to_owned());
         *track = fresh;
     }
@@ -60,10 +64,18 @@ fn of_side(
     remarks.add(Code::Guessed, dropped as u64, message);
 }
 
-/// Whether a plan that is held has samples of a motion: set values that step from one to the next are held longer, and those
-/// that are rounded change when the plan passes from one to the next.
-fn is_sampled(plan: &Track, fresh: &Track, longest_s: f64) -> bool {
-    fresh.sample_interval_s() <= longest_s && rounding(plan).is_none()
+/// The samples of a motion that was sent slower than it was logged: set values that step from one to the next are held longer, and
+/// those that are rounded change when the plan passes from one to the next. Between them it goes on smoothly.
+fn sent(track: &Track, longest_s: f64) -> Option<Track> {
+    let even = || {
+        let fresh = fresh(track)?;
+        match track.velocity() {
+            Some(_) => Some(fresh),
+            None => smooth(track, fresh.t_s().to_vec(), fresh.position().to_vec()),
+        }
+    };
+    let found = sampled(track).or_else(even)?;
+    (found.sample_interval_s() <= longest_s && rounding(track).is_none()).then_some(found)
 }
 
 fn differ(a: f64, b: f64) -> bool {
@@ -126,7 +138,7 @@ mod tests {
         let at = |k: usize| (0.3 * (0.7 * read_s(k)).sin() / step).round() * step;
         let track = Track::new("a", t_s, (0..2000).map(at).collect(), &[]).unwrap();
         let mut series = Series { tracks: vec![track] };
-        of_side(&mut series, |_, _| true, ["measured", "a sensor", "not judged"], &mut Remarks::default());
+        of_side(&mut series, fresh, ["measured", "a sensor", "not judged"], &mut Remarks::default());
         series.tracks[0].len()
     }
 
@@ -139,7 +151,7 @@ mod tests {
         let mut remarks = Remarks::default();
         of_sides(&mut [("planned", &mut planned), ("measured", &mut measured)], false, &mut remarks);
         let kept = &planned.tracks[0];
-        assert_eq!((kept.len(), kept.t_s().last()), (242, Some(&12.02)));
+        assert_eq!((kept.len(), kept.t_s().last()), (241, Some(&12.02)));
         let said = &remarks.as_slice()[0].message;
         assert!(said.starts_with("planned values of a") && said.ends_with("are interpolated"), "{said}");
         // A staircase of set values, and a plan in steps of 0.1 deg, are as they are.

@@ -6,8 +6,9 @@ use super::{
     descend::descend,
 };
 use crate::{
-    plan::{Choice, KEPT_SHARE, Limit, Margin, PlanEvaluation, Setup, Timing, Via},
+    plan::{Choice, KEPT_SHARE, Limit, Margin, PlanEvaluation, Setup, Timing, Via, setup::JointLimits},
     task::{Ceilings, Objective},
+    threads,
 };
 
 /// A plan whose shape is free.
@@ -39,9 +40,10 @@ pub enum NoShape {
 
 /// Pieces of an interval at most.
 pub const MOST_PIECES: u32 = 30;
-/// Pieces that a motion is split into by default, and how many that is of an interval at least and most.
+/// Pieces that a motion is split into by default, and how many that is of an interval at least and most; at least two where a
+/// motion has many.
 const PIECES: usize = 25;
-const FEWEST: usize = 2;
+const FEWEST: [usize; 2] = [2, 4];
 const DEFAULT_MOST: usize = 5;
 /// Pieces of a motion at most, by default and of a caller who says how many: the time of a step grows with their cube.
 const MOST: [usize; 2] = [128, 256];
@@ -95,6 +97,50 @@ pub fn smoother(
     sought(setup, timing, Aim::smoother(ceilings), ceilings, pieces)
 }
 
+/// Where a descent begins.
+#[derive(Debug, Clone, Copy)]
+enum Begin<'a> {
+    /// At the motion of the timing.
+    Passing,
+    /// Near one that stops at every key point, with these times of movement, s.
+    Stopping(&'a [f64]),
+}
+
+/// Times from rest to rest between the key points, as joints allow by themselves, s.
+fn stopping_s(setup: &Setup) -> Vec<f64> {
+    // Largest speed, acceleration and jerk of the move that has no acceleration at its ends, over one unit in one.
+    const PEAKS: [f64; 3] = [1.875, 5.7735, 60.0];
+    let points = setup.template().points();
+    let one = |interval: usize| {
+        let ends = points.of(interval).iter().zip(points.of(interval + 1)).zip(&setup.limits);
+        let of = |((from, to), limits): ((&f64, &f64), &JointLimits)| {
+            let most = [limits.speed_rad_s, limits.acceleration_rad_s2, limits.jerk_rad_s3];
+            let each = PEAKS.into_iter().zip(most).zip([1.0, 0.5, 1.0 / 3.0]);
+            each.map(|((peak, most), power)| (peak * (to - from).abs() / most).powf(power))
+                .fold(0.0, f64::max)
+        };
+        ends.map(of).fold(0.0, f64::max).clamp(setup.interval_s[0], setup.interval_s[1])
+    };
+    (0..points.len().saturating_sub(1)).map(one).collect()
+}
+
+/// The free points of moves from rest to rest in place of those of a curve; where joints at a key point are free, they are its.
+fn stopping((frame, mut curve): (Frame<'_>, Curve), pieces: usize) -> (Frame<'_>, Curve) {
+    let joints = frame.joints();
+    let keys = frame.key.clone();
+    for ends in keys.windows(2) {
+        for k in 1..pieces {
+            let x = k as f64 / pieces as f64;
+            let share = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+            for joint in 0..joints {
+                let [from, to] = [ends[0], ends[1]].map(|point| curve.point_rad[point * joints + joint]);
+                curve.point_rad[(ends[0] + k) * joints + joint] = from + share * (to - from);
+            }
+        }
+    }
+    (frame, curve)
+}
+
 /// From the times; where ceilings leave no better plan that way, from the shape that keeps them best.
 fn sought(
     setup: &Setup,
@@ -104,8 +150,27 @@ fn sought(
     pieces: Option<usize>,
 ) -> Result<Shape, NoShape> {
     let bound = |k: &Objective| ceilings[*k].is_finite();
-    let from = |first: Option<Aim>| sought_from(setup, timing, (first, aim), ceilings, pieces);
-    let mut found = from(None);
+    let stops = stopping_s(setup);
+    let begun = |begin: Begin<'_>, first| sought_from(setup, (timing, begin), (first, aim), ceilings, pieces);
+    let from = |first: Option<Aim>| begun(Begin::Passing, first);
+    // Where key points lie close together, or a pass would swing wide, the best curve near the one that stops is better.
+    let (mut found, other) = threads::both(
+        || from(None),
+        || {
+            if aim.pace == Pace::Fastest {
+                begun(Begin::Stopping(&stops), None)
+            } else {
+                Err(NoShape::NoGain)
+            }
+        },
+    );
+    if let Ok(other) = other
+        && found.as_ref().map_or(true, |found| {
+            aim.merit(&other.evaluation.objectives) < aim.merit(&found.evaluation.objectives)
+        })
+    {
+        found = Ok(other);
+    }
     for first in [Aim::fastest(), Aim::smoother(ceilings)] {
         if found == Err(NoShape::NoGain) && Objective::OF_PLAN.iter().any(bound) {
             found = from(Some(first));
@@ -116,7 +181,7 @@ fn sought(
 
 fn sought_from(
     setup: &Setup,
-    timing: &Timing,
+    (timing, begin): (&Timing, Begin<'_>),
     (first, mut aim): (Option<Aim>, Aim),
     ceilings: &Ceilings,
     pieces: Option<usize>,
@@ -124,7 +189,12 @@ fn sought_from(
     let intervals = setup.interval_count();
     let most = MOST[usize::from(pieces.is_some())];
     let pieces = pieces
-        .unwrap_or((PIECES / intervals.max(1)).clamp(FEWEST, DEFAULT_MOST))
+        .unwrap_or(
+            (PIECES / intervals.max(1))
+                .clamp(FEWEST[1], DEFAULT_MOST)
+                .min(most / intervals.max(1))
+                .max(FEWEST[0]),
+        )
         .clamp(1, MOST_PIECES as usize);
     if intervals * pieces > most {
         return Err(NoShape::TooManyIntervals { found: intervals, most: most / pieces });
@@ -135,7 +205,11 @@ fn sought_from(
     while coarse > DEFAULT_MOST && coarse.is_multiple_of(2) {
         coarse /= 2;
     }
-    let (mut frame, mut curve) = start(setup, &timing.interval_s, coarse).ok_or(NoShape::NoGain)?;
+    let (mut frame, mut curve) = match begin {
+        Begin::Passing => start(setup, &timing.interval_s, coarse),
+        Begin::Stopping(interval_s) => start(setup, interval_s, coarse).map(|start| stopping(start, coarse)),
+    }
+    .ok_or(NoShape::NoGain)?;
     let mut steps = 0;
     if let Some(first) = first {
         let end = descend(&frame, curve, &first, (STEPS, ENOUGH)).ok_or(NoShape::NoGain)?;

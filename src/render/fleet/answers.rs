@@ -104,7 +104,9 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
     let found: Vec<&JointTrend> = drift.trends.iter().filter(|trend| trend.found).collect();
     let of = format!("{} of {}", counted(drift.runs, "run"), counted(drift.machines, "machine"));
     let first = match (found.len(), drift.trends.len()) {
-        (_, 0) => format!("{of}: no joint has five runs of one plan, which a trend takes."),
+        (_, 0) => format!(
+            "{of}: no joint has five runs of one plan, begun at different times, which a trend takes."
+        ),
         (0, all) => format!("{of}: no drift and no step found among {}.", counted(all, "trend")),
         (some, all) => format!("{of}: {some} of {} found.", counted(all, "trend")),
     };
@@ -119,12 +121,19 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
                 usual where ten joints or more tell that. A step is a level that changes between two runs and stays; it \
                 stands in place of a trend where it explains the levels better.";
     section = section.with(Sentence::note(note));
-    section = section.with_all(not_judged(drift.too_few));
+    let unsure = drift.trends.iter().filter(|trend| !trend.found && trend.runs < drift.fewest_runs).count();
+    section = section.with_all(not_judged(drift.too_few + unsure, drift.fewest_runs));
     Document::default().with(section).remarked(&drift.remarks)
 }
 
-fn not_judged(too_few: usize) -> Option<Sentence> {
-    let few = || format!("{} with fewer than five runs of one plan, not judged.", counted(too_few, "trend"));
+fn not_judged(too_few: usize, fewest: usize) -> Option<Sentence> {
+    let few = || {
+        format!(
+            "{} with fewer than {} of one plan, not judged: fewer prove nothing among so many joints.",
+            counted(too_few, "trend"),
+            counted(fewest, "run")
+        )
+    };
     (too_few > 0).then(|| Sentence::note(few()))
 }
 
@@ -170,6 +179,18 @@ pub(crate) fn effect(effect: &Effect, most: usize) -> Document {
         effect.runs_after
     );
     let mut section = Section::plain(Id::SUMMARY, [Sentence::finding(first)]);
+    section = section.with_all(effect.between.iter().map(|note| {
+        let (when, more) =
+            if note.at < effect.at { ("before", "; `--since DATE` takes them") } else { ("after", "") };
+        Sentence::note(format!("Runs {when} {} ({}) are left out{more}.", day(&note.at), note.what))
+    }));
+    section = section.with_all(effect.together.iter().map(|note| {
+        Sentence::note(format!(
+            "Fewer than three runs lie between it and {} ({}): the effect is that of both.",
+            day(&note.at),
+            note.what
+        ))
+    }));
     let found: Vec<&JointEffect> = effect.effects.iter().filter(|effect| effect.found).collect();
     if found.is_empty() {
         let none = if effect.effects.is_empty() {
@@ -225,25 +246,27 @@ fn effects<'a>(effects: impl Iterator<Item = &'a JointEffect>) -> Table {
 
 /// The limits, each with what was found.
 pub(crate) fn gate(gated: &Gated) -> Document {
-    let section = Section::plain(Id::SUMMARY, gate_verdicts(gated)).with_all(not_judged(gated.too_few));
+    let section = Section::plain(Id::SUMMARY, gate_verdicts(gated))
+        .with_all(not_judged(gated.too_few, gated.fewest_runs));
     Document::default().with(section).remarked(&gated.remarks)
 }
 
 /// The limits as verdicts.
 pub(crate) fn gate_verdicts(gated: &Gated) -> Vec<Sentence> {
-    gated.gates.iter().map(verdict).collect()
+    gated.gates.iter().map(|gate| verdict(gate, gated.fewest_runs)).collect()
 }
 
-fn verdict(gate: &GateResult) -> Sentence {
+fn verdict(gate: &GateResult, fewest_runs: usize) -> Sentence {
     let unit = shown_unit(&gate.unit);
     let most = shown_change(&gate.unit, gate.most_per_day);
     let limit =
         format!("{} growth of {} {unit} a day at most", name(gate.metric), most.trim_start_matches('+'));
+    let has = format!("has {} of one plan", counted(fewest_runs, "run"));
     let found = match &gate.worst {
         None => match gate.unit.as_str() {
-            "m" => "nothing to judge: no joint that slides has five runs of one plan".to_owned(),
-            "rad" => "nothing to judge: no joint that turns has five runs of one plan".to_owned(),
-            _ => "nothing to judge: no joint has five runs of one plan".to_owned(),
+            "m" => format!("nothing to judge: no joint that slides {has}"),
+            "rad" => format!("nothing to judge: no joint that turns {has}"),
+            _ => format!("nothing to judge: no joint {has}"),
         },
         Some(worst) => {
             let grows = match step_of(worst) {

@@ -313,6 +313,7 @@ pub(crate) fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEval
     });
     let mut lines: Vec<String> = lines.collect();
     lines.extend(longest(longest_s, nearest));
+    lines.extend(nearest.broken().first().and_then(|margin| mended(margin, nearest)));
     if lines.is_empty() {
         lines.push(format!(
             "every limit holds but for rounding; {} is the nearest",
@@ -320,6 +321,23 @@ pub(crate) fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEval
         ));
     }
     lines
+}
+
+/// What mends a limit that no times do.
+fn mended(margin: &Margin, nearest: &PlanEvaluation) -> Option<String> {
+    let after = nearest.times_s.partition_point(|arrival_s| *arrival_s <= margin.t_s);
+    let [before, after] = [after.max(1), (after + 1).min(nearest.times_s.len())];
+    match margin.limit {
+        Limit::Position => Some(format!(
+            "the curve swings there between key points {before} and {after}: with dwell_s = 0.1 at both the arm stops at them, and \
+             stays between them on its way"
+        )),
+        Limit::Torque | Limit::RodForce => Some(format!(
+            "that is between key points {before} and {after}, and no more time mends what the weight takes at rest: less payload, \
+             another posture or a wider limit does"
+        )),
+        _ => None,
+    }
 }
 
 /// Intervals that the task allows no longer.

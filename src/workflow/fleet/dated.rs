@@ -17,26 +17,30 @@ const YEARS: RangeInclusive<i32> = 1990..=2099;
 /// When a run began, ns since 1970, as its stamps say if they say a date; `None` of one whose name holds none either.
 ///
 /// A date is `2026-03-06` or `20260306`, with `-`, `_`, `.` or nothing between its parts, or `06.03.2026`; a time of day may
-/// follow as `08-15`, `0815` or `081530`. The log's own name counts before those of its folders.
+/// follow as `08-15`, `0815` or `081530`. The log's own name counts before those of its folders; of several dates in one name the
+/// latest counts.
 pub(in crate::workflow) fn began_ns(uri: &str, stamped_ns: Option<i64>) -> Option<i64> {
     let named = || uri.trim_end_matches('/').rsplit('/').take(NAMES).find_map(date_in);
     stamped_ns.or_else(|| named()?.and_utc().timestamp_nanos_opt())
 }
 
-/// Stamps and name of a run that say dates so far apart are not of one clock, days.
+/// Stamps and name of a run that say dates so far apart may not be of one clock, days; a folder may be that of a month.
+const DOUBTED_DAYS: f64 = 31.0;
+/// Those so far apart are not.
 const OTHER_DATE_DAYS: f64 = 180.0;
 
-/// When a run began by the name of its log, or of its folder, where that says a date far from that of its stamps; microseconds
-/// since 1970. Folders farther up may be of a delivery, or a number. The time of day is that of the stamps where the name says
-/// none.
-pub(super) fn named_otherwise(uri: &str, started_us: i64) -> Option<i64> {
+/// When a run began by the name of its log, or of its folder, where that says a date far from that of its stamps, microseconds
+/// since 1970; and whether it is so far that the stamps cannot be right. Folders farther up may be of a delivery, or a number. The
+/// time of day is that of the stamps where the name says none.
+pub(super) fn named_otherwise(uri: &str, started_us: i64) -> Option<(i64, bool)> {
     const DAY_US: i64 = 86_400_000_000;
     let mut names = uri.trim_end_matches('/').rsplit('/').take(2);
     let named_us = names.find_map(date_in)?.and_utc().timestamp_micros();
     let apart_s = named_us.abs_diff(started_us) as f64 / 1e6;
     let of_day = named_us.rem_euclid(DAY_US) == 0;
     let us = if of_day { named_us + started_us.rem_euclid(DAY_US) } else { named_us };
-    (apart_s > OTHER_DATE_DAYS * SECONDS_PER_DAY).then_some(us)
+    let beyond = |days: f64| apart_s > days * SECONDS_PER_DAY;
+    beyond(DOUBTED_DAYS).then(|| (us, beyond(OTHER_DATE_DAYS)))
 }
 
 /// The doubt about a run without one.
@@ -48,12 +52,15 @@ pub(super) fn undated() -> Remark {
 fn date_in(name: &str) -> Option<NaiveDateTime> {
     let bytes = name.as_bytes();
     let begins = |at: &usize| *at == 0 || !bytes[*at - 1].is_ascii_digit();
-    (0..bytes.len()).filter(begins).find_map(|at| date_at(&bytes[at..]))
+    // A run is later than the plan or the revision that its name says too.
+    (0..bytes.len()).filter(begins).filter_map(|at| date_at(&bytes[at..])).max()
 }
 
 fn date_at(text: &[u8]) -> Option<NaiveDateTime> {
     let (date, rest) = year_first(text).or_else(|| day_first(text))?;
-    let timed = time_at(separator(rest, b"T-_ ").1).and_then(|[h, m, s]| date.and_hms_opt(h, m, s));
+    let after = separator(rest, b"T-_ ").1;
+    let time = time_at(after).filter(|_| year_first(after).is_none());
+    let timed = time.and_then(|[h, m, s]| date.and_hms_opt(h, m, s));
     // More digits are no date: a serial number.
     let ends = !rest.first().is_some_and(u8::is_ascii_digit);
     timed.or_else(|| if ends { date.and_hms_opt(0, 0, 0) } else { None })
@@ -119,9 +126,12 @@ mod tests {
             ("/logs/M1/2025-03-01/run.csv", Some(day_us - 365 * 24 * hour_us + 9 * hour_us)),
             ("/logs/M1/2025-03-01_0700.csv", Some(day_us - 365 * 24 * hour_us + 7 * hour_us)),
             ("/logs/M1/run_2026-02-27.csv", None),
+            ("/logs/M1/run_2026-01-11.csv", Some(day_us - 49 * 24 * hour_us + 9 * hour_us)),
             ("/logs/delivery_2024-01-05/M1/run.csv", None),
         ] {
-            assert_eq!(named_otherwise(uri, day_us + 9 * hour_us), named_us, "{uri}");
+            let found = named_otherwise(uri, day_us + 9 * hour_us);
+            assert_eq!(found.map(|(us, _)| us), named_us, "{uri}");
+            assert!(found.is_none_or(|(_, surely)| surely == uri.contains("2025")), "{uri}");
         }
     }
 
@@ -138,6 +148,8 @@ mod tests {
             ("trace 6.3.2026 8-15.csv", "2026-03-06 00:00:00"),
             ("M7/06.03.2026/run_08-15.csv", "2026-03-06 00:00:00"),
             ("06.03.2026_0815.csv", "2026-03-06 08:15:00"),
+            ("rev2025-11-20_2026-03-06.csv", "2026-03-06 00:00:00"),
+            ("2026-03-06_0815_plan_2025-11-20.csv", "2026-03-06 08:15:00"),
         ] {
             let ns = began_ns(uri, None).unwrap();
             let at = chrono::DateTime::from_timestamp_nanos(ns).format("%Y-%m-%d %H:%M:%S").to_string();

@@ -48,13 +48,18 @@ pub struct Drift {
     pub maps: Vec<Map>,
     /// Machines, joints and metrics with too few runs of one plan to tell a trend.
     pub too_few: usize,
+    /// Runs that a trend takes at least to be found among so many, if all of them are in order.
+    #[serde(default)]
+    pub fewest_runs: usize,
     /// Doubts about the data.
     pub remarks: Remarks,
 }
 
 /// The starts that enough runs have, as rows by run, with what each row says; and those runs. A start that scatters on
-/// all machines says little, however quiet it was on this one.
+/// all machines says little, however quiet it was on this one. Peak errors grow and scatter in proportion, those of a fast start
+/// by more: so each row is scaled to the level of the middle one, or the slowest start would say it all.
 pub(super) fn matrix(
+    metric: By,
     values: &Values,
     fewest: usize,
     (joint, scatters): (&str, &Scatters),
@@ -66,14 +71,24 @@ pub(super) fn matrix(
     let row = |of_runs: &BTreeMap<usize, f64>| {
         runs.iter().map(|run| of_runs.get(run).copied().unwrap_or(f64::NAN)).collect()
     };
-    let rows: Vec<Vec<f64>> = often().map(row).collect();
+    let mut rows: Vec<Vec<f64>> = often().map(row).collect();
     let events = values.iter().filter(|(_, of_runs)| of_runs.len() >= fewest);
     let scatter = |(event, of_runs): (&Event, &BTreeMap<usize, f64>)| {
         let own = step_scatter(of_runs.values().copied());
         let usual = scatters.get(&(joint.to_owned(), event.clone())).copied();
         own.into_iter().chain(usual).reduce(f64::max)
     };
-    let scatters: Vec<Option<f64>> = events.map(scatter).collect();
+    let mut scatters: Vec<Option<f64>> = events.map(scatter).collect();
+    if metric == By::Peak {
+        let level = |row: &Vec<f64>| median(row.iter().copied().filter(|value| value.is_finite()).collect());
+        let levels: Vec<f64> = rows.iter().map(level).collect();
+        let middle = median(levels.clone());
+        for ((row, scatter), level) in rows.iter_mut().zip(&mut scatters).zip(levels) {
+            let share = if level > 0.0 { middle / level } else { 1.0 };
+            row.iter_mut().for_each(|value| *value *= share);
+            *scatter = scatter.map(|scatter| scatter * share);
+        }
+    }
     let weights = row_weights(&scatters);
     (runs, rows, weights)
 }
@@ -103,17 +118,18 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
             unit: if *metric == By::Peak { axis.unit.clone() } else { "s".to_owned() },
             ..found
         };
-        let Some(found) = joint_trend(&history.runs, values, scatters) else {
+        let Some(found) = joint_trend(*metric, &history.runs, values, scatters) else {
             too_few += usize::from(wanted(&axis.machine));
             continue;
         };
         trends.push(named(found, None));
         for (direction, own) in by_direction(&history, axis, values) {
-            let found = joint_trend(&history.runs, &own, scatters);
+            let found = joint_trend(*metric, &history.runs, &own, scatters);
             trends.extend(found.map(|found| named(found, Some(direction))));
         }
     }
     judge(&mut trends);
+    let fewest_runs = fewest_runs(trends.len());
     let mut trends = clearest(trends);
     trends.retain(|trend| wanted(&trend.machine));
     trends.sort_by(|a, b| {
@@ -130,13 +146,20 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
         trends,
         maps: maps(&history, by, wanted),
         too_few,
+        fewest_runs,
         remarks: history.remarks,
     })
 }
 
+/// Runs that make a trend sure among so many, each of which is tested as a step, too: in order by chance are two of all orders.
+fn fewest_runs(trends: usize) -> usize {
+    let by_chance = |runs: usize| 2.0 / (1..=runs).map(|k| k as f64).product::<f64>();
+    (FEWEST_RUNS..).find(|runs| by_chance(*runs) * 2.0 * (trends as f64) < MOST_FALSE).unwrap_or(FEWEST_RUNS)
+}
+
 /// The trend without its names; `None` for too few runs.
-fn joint_trend(runs: &[Run], values: &Values, scatters: (&str, &Scatters)) -> Option<JointTrend> {
-    let (own, rows, weights) = matrix(values, FEWEST_RUNS, scatters);
+fn joint_trend(metric: By, runs: &[Run], values: &Values, scatters: (&str, &Scatters)) -> Option<JointTrend> {
+    let (own, rows, weights) = matrix(metric, values, FEWEST_RUNS, scatters);
     let at: Vec<f64> = own.iter().filter_map(|run| runs.get(*run)).map(days).collect();
     let points = |row: &[f64]| -> Vec<(f64, f64)> {
         at.iter().copied().zip(row.iter().copied()).filter(|(_, value)| value.is_finite()).collect()
@@ -200,21 +223,42 @@ mod tests {
     #[test]
     fn a_slope_is_found_at_matched_starts_though_the_largest_is_lost_late() {
         let (runs, values) = values(2.0);
-        let found = joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap();
+        let found = joint_trend(By::Delay, &runs, &values, ("boom", &Scatters::new())).unwrap();
         assert!((found.slope_per_day - 2.0).abs() < 0.05 && found.p_value < 1e-5, "{found:?}");
         assert!(found.interval_95[0] > 1.8 && found.interval_95[1] < 2.2, "{found:?}");
         assert_eq!((found.starts, found.runs, found.since.as_deref()), (8, 10, Some("1970-01-01T00:00:00Z")));
     }
 
+    /// What grows by a tenth of its first value a day does so at slow and at fast starts, which scatter in proportion.
+    #[test]
+    fn the_slowest_start_does_not_say_all_of_a_peak_error() {
+        let (runs, mut values) = values(0.0);
+        for (event, of_runs) in &mut values {
+            for (run, value) in of_runs {
+                let noise = 0.01 * ((*run * 7 + event.index as usize * 3) % 5) as f64;
+                *value = (1.0 + event.index as f64) * (1.0 + 0.1 * *run as f64 + noise);
+            }
+        }
+        let found = joint_trend(By::Peak, &runs, &values, ("boom", &Scatters::new())).unwrap();
+        // The middle one of starts that grow by 0.1 to 0.8.
+        assert!((found.slope_per_day - 0.45).abs() < 0.03 && found.p_value < 1e-5, "{found:?}");
+        assert!(found.levels.iter().all(|level| level.value > 0.0), "{:?}", found.levels);
+    }
+
+    #[test]
+    fn more_trends_take_more_runs() {
+        assert_eq!([1, 16, 48, 720].map(fewest_runs), [5, 7, 7, 9]);
+    }
+
     #[test]
     fn noise_is_no_trend_and_four_runs_prove_nothing() {
         let (runs, values) = values(0.0);
-        assert!(joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap().p_value > 0.05);
+        assert!(joint_trend(By::Delay, &runs, &values, ("boom", &Scatters::new())).unwrap().p_value > 0.05);
         let few = values.into_iter().map(|(event, mut of)| {
             of.retain(|run, _| *run < 4);
             (event, of)
         });
-        assert_eq!(joint_trend(&runs, &few.collect(), ("boom", &Scatters::new())), None);
+        assert_eq!(joint_trend(By::Delay, &runs, &few.collect(), ("boom", &Scatters::new())), None);
     }
 
     #[test]
@@ -223,18 +267,18 @@ mod tests {
         for of_runs in values.values_mut() {
             of_runs.iter_mut().filter(|(run, _)| **run >= 6).for_each(|(_, value)| *value += 3.0);
         }
-        let mut found = vec![joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap()];
+        let mut found = vec![joint_trend(By::Delay, &runs, &values, ("boom", &Scatters::new())).unwrap()];
         judge(&mut found);
         let step = found[0].step.clone().unwrap();
         assert!(found[0].found && found[0].is_step, "{found:?}");
         assert_eq!(found[0].since.as_deref(), Some("1970-01-07T00:00:00Z"));
         assert!((step.change - 3.0).abs() < 0.2 && (found[0].growth_per_day() - step.change).abs() < 1e-12);
         let (runs, mut values) = super::tests::values(2.0);
-        let mut drifts = vec![joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap()];
+        let mut drifts = vec![joint_trend(By::Delay, &runs, &values, ("boom", &Scatters::new())).unwrap()];
         judge(&mut drifts);
         assert!(drifts[0].found && !drifts[0].is_step, "{drifts:?}");
         values.values_mut().flat_map(BTreeMap::values_mut).for_each(|value| *value += 2000.0);
-        let mut drifts = vec![joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap()];
+        let mut drifts = vec![joint_trend(By::Delay, &runs, &values, ("boom", &Scatters::new())).unwrap()];
         judge(&mut drifts);
         assert!(drifts[0].q_value < 0.01 && !drifts[0].found, "of no concern: {drifts:?}");
     }
@@ -248,9 +292,10 @@ mod tests {
             runs: 10,
             machines: 1,
             false_discovery_rate: MOST_FALSE,
-            trends: vec![joint_trend(&runs, &values, ("boom", &Scatters::new())).unwrap()],
+            trends: vec![joint_trend(By::Delay, &runs, &values, ("boom", &Scatters::new())).unwrap()],
             maps: Vec::new(),
             too_few: 0,
+            fewest_runs: FEWEST_RUNS,
             remarks: Remarks::default(),
         };
         is_written_and_read(&document, "fleet-drift.v1.schema.json", "hydrotrace fleet drift, version 1");

@@ -4,7 +4,7 @@
 //! the change minus the mean before it, less what the other machines changed by in the same time (their median). It is
 //! known no better than the machine's own runs scatter, nor than the other machines change without any reason.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,9 @@ use super::{
     failure::FleetFailure,
     history::{Axis, By, Filter, History, Scatters, Values},
     joint_trend::MOST_FALSE,
-    run::{date, days},
+    note::{Intervention, Note, notes},
+    run::date,
+    window::Window,
 };
 use crate::{
     document::PROGRAM,
@@ -42,6 +44,12 @@ pub struct Effect {
     /// What was done, as it is noted; null where the caller named the instant.
     #[serde(default)]
     pub what: Option<String>,
+    /// What was noted last before and first after it, where there is such a thing: runs beyond these are left out.
+    #[serde(default)]
+    pub between: Vec<Intervention>,
+    /// What was noted with fewer than three runs between: the effect is that of all of it.
+    #[serde(default)]
+    pub together: Vec<Intervention>,
     /// Runs of the machine before.
     pub runs_before: usize,
     /// Runs of the machine after.
@@ -97,16 +105,26 @@ struct Sides {
 }
 
 impl Sides {
-    fn of(history: &History, scatters: (&str, &Scatters), values: &Values, at_days: f64) -> Self {
-        let is_after = |run: &usize| history.runs.get(*run).is_some_and(|run| days(run) >= at_days);
+    fn of(
+        history: &History,
+        metric: By,
+        scatters: (&str, &Scatters),
+        values: &Values,
+        window: Window,
+    ) -> Self {
+        let is_after = |run: &usize| history.runs.get(*run).is_some_and(|run| window.is_after(run));
+        let tells = |run: &usize| history.runs.get(*run).is_some_and(|run| window.holds(run));
         // A start that one side lacks tells nothing of the change.
-        let both = |of: &std::collections::BTreeMap<usize, f64>| {
+        let both = |of: &BTreeMap<usize, f64>| {
             let after = of.keys().filter(|run| is_after(run)).count();
             after > 0 && after < of.len()
         };
-        let values: Values =
-            values.iter().filter(|(_, of)| both(of)).map(|(e, of)| (e.clone(), of.clone())).collect();
-        let (runs, rows, weights) = matrix(&values, 2, scatters);
+        let told = values.iter().map(|(event, of)| {
+            let of = of.iter().filter(|(run, _)| tells(run)).map(|(run, value)| (*run, *value));
+            (event.clone(), of.collect::<BTreeMap<usize, f64>>())
+        });
+        let values: Values = told.filter(|(_, of)| both(of)).collect();
+        let (runs, rows, weights) = matrix(metric, &values, 2, scatters);
         let levels = column_levels(&rows, &weights, runs.len());
         let side = |after: bool| {
             let levels =
@@ -124,7 +142,8 @@ impl Sides {
     }
 }
 
-/// The effect of a change of a machine at an instant, microseconds since 1970; a run that begins then is after it.
+/// The effect of a change of a machine at an instant, microseconds since 1970; a run that begins then is after it. Runs before
+/// what was noted of the joint earlier, or after what was noted later, tell of something else: they are left out.
 ///
 /// # Errors
 ///
@@ -138,13 +157,21 @@ pub fn effect(
 ) -> Result<Effect, FleetFailure> {
     let filter = Filter { machine: Some(machine.to_owned()), ..filter.clone() };
     let history = History::read(root, &filter, true)?;
-    let at_days = at_us as f64 / 1e6 / SECONDS_PER_DAY;
+    let noted = notes(root, Some(machine))?;
+    let own_runs = || history.runs.iter().filter(|run| run.machine == machine);
+    let runs_us: Vec<i64> = own_runs().map(|run| run.started_us).collect();
+    let of_joint = |joint: Option<&str>| {
+        let about = |note: &&Note| note.joint.is_none() || joint.is_some() && note.joint.as_deref() == joint;
+        let noted: Vec<&Note> = noted.iter().filter(about).collect();
+        (Window::of(at_us, filter.since_us, &runs_us, noted.iter().copied()), noted)
+    };
+    let (whole, of_whole) = of_joint(filter.joint.as_deref());
     let own =
         history.values.iter().filter(|((axis, metric), _)| axis.machine == machine && by.contains(metric));
     let mut effects = Vec::new();
     let mut too_few = 0;
     for ((axis, metric), values) in own {
-        match joint_effect(&history, axis, *metric, values, at_days) {
+        match joint_effect(&history, axis, *metric, values, of_joint(Some(&axis.joint)).0) {
             Some(found) => effects.push(found),
             None => too_few += 1,
         }
@@ -159,16 +186,17 @@ pub fn effect(
         let by_share = share(b).total_cmp(&share(a));
         b.found.cmp(&a.found).then(if a.found { by_share } else { a.p_value.total_cmp(&b.p_value) })
     });
-    let runs = |after: bool| {
-        let own = history.runs.iter().filter(|run| run.machine == machine);
-        own.filter(|run| (run.started_us >= at_us) == after).count()
-    };
+    let runs =
+        |after: bool| own_runs().filter(|run| whole.holds(run) && whole.is_after(run) == after).count();
+    let [between, together] = whole.beside(&of_whole);
     Ok(Effect {
         format: FORMAT.to_owned(),
         program: PROGRAM.to_owned(),
         machine: machine.to_owned(),
-        at: date(at_days).unwrap_or_default(),
+        at: date(at_us as f64 / 1e6 / SECONDS_PER_DAY).unwrap_or_default(),
         what: None,
+        between,
+        together,
         runs_before: runs(false),
         runs_after: runs(true),
         false_discovery_rate: MOST_FALSE,
@@ -178,16 +206,36 @@ pub fn effect(
     })
 }
 
+/// The effect of what was done last, of the machine or of any; where it was done to one joint, of that one unless the
+/// filter names another.
+///
+/// # Errors
+///
+/// [`FleetFailure::NoNote`] if nothing is noted; otherwise as [`effect`].
+pub fn effect_of_last_note(
+    root: &Path,
+    machine: Option<&str>,
+    filter: &Filter,
+    by: &[By],
+) -> Result<Effect, FleetFailure> {
+    let last = notes(root, machine)?.pop().ok_or_else(|| FleetFailure::NoNote {
+        machine: machine.map(str::to_owned),
+        dataset: root.to_owned(),
+    })?;
+    let filter = Filter { joint: filter.joint.clone().or(last.joint), ..filter.clone() };
+    Ok(Effect { what: Some(last.what), ..effect(root, &last.machine, last.at_us, &filter, by)? })
+}
+
 fn joint_effect(
     history: &History,
     axis: &Axis,
     metric: By,
     values: &Values,
-    at_days: f64,
+    window: Window,
 ) -> Option<JointEffect> {
     let scatters = history.scatters(metric);
     let scatters = (axis.joint.as_str(), &scatters);
-    let sides = Sides::of(history, scatters, values, at_days);
+    let sides = Sides::of(history, metric, scatters, values, window);
     let own = sides.change()?;
     let alike = |(other, by): &&(Axis, By)| {
         *by == metric
@@ -195,8 +243,9 @@ fn joint_effect(
             && (&other.joint, &other.unit) == (&axis.joint, &axis.unit)
     };
     let others = history.values.iter().filter(|(key, _)| alike(key));
-    let others: Vec<f64> =
-        others.filter_map(|(_, values)| Sides::of(history, scatters, values, at_days).change()).collect();
+    let others: Vec<f64> = others
+        .filter_map(|(_, values)| Sides::of(history, metric, scatters, values, window).change())
+        .collect();
     let usual =
         (others.len() >= FEWEST_OTHERS).then(|| (median(others.clone()), SIGMA_PER_MAD * mad(&others)));
     let (usual_change, spread) = usual.unwrap_or((0.0, 0.0));
@@ -239,7 +288,7 @@ mod tests {
             for (joint, share) in [("boom", 1.0), ("stick", 0.0)] {
                 let unit = "rad".to_owned();
                 let axis = Axis { machine: run.machine.clone(), joint: joint.to_owned(), unit };
-                let values = history.values.entry((axis, By::Peak)).or_default();
+                let values = history.values.entry((axis, By::Delay)).or_default();
                 for index in 0..5 {
                     let better = if k % 6 == 0 { 1.0 + 3.0 * share } else { 1.0 };
                     let change = if k / 6 >= 5 { -better } else { 0.0 };
@@ -254,6 +303,10 @@ mod tests {
         history
     }
 
+    fn window() -> Window {
+        Window::of(5 * 86_400_000_000, None, &[], [].iter())
+    }
+
     #[test]
     fn what_the_whole_fleet_does_is_no_effect_of_the_repair() {
         let history = history();
@@ -261,7 +314,7 @@ mod tests {
             let found =
                 history.values.iter().find(|((axis, _), _)| axis.machine == "M0" && axis.joint == joint);
             let ((axis, metric), values) = found.unwrap();
-            joint_effect(&history, axis, *metric, values, 5.0).unwrap()
+            joint_effect(&history, axis, *metric, values, window()).unwrap()
         };
         let boom = of("boom");
         assert!((boom.change + 3.0).abs() < 0.2 && boom.p_value < 1e-4, "{boom:?}");
@@ -280,10 +333,12 @@ mod tests {
             machine: "M0".into(),
             at: date(5.0).unwrap(),
             what: Some("valve replaced".into()),
+            between: Vec::new(),
+            together: Vec::new(),
             runs_before: 5,
             runs_after: 5,
             false_discovery_rate: MOST_FALSE,
-            effects: joint_effect(&history, axis, *metric, values, 5.0).into_iter().collect(),
+            effects: joint_effect(&history, axis, *metric, values, window()).into_iter().collect(),
             too_few: 0,
             remarks: Remarks::default(),
         };

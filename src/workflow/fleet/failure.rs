@@ -51,6 +51,19 @@ pub enum FleetFailure {
         machine.as_deref().map_or("MACHINE".to_owned(), shell_word)
     )]
     NoNote { machine: Option<String>, dataset: PathBuf },
+    /// A note of an instant that is no one's.
+    #[error(
+        "{at} is more than a year from the nearest run of {machine}, which began {run}; is the date right?"
+    )]
+    FarNote { machine: String, at: String, run: String },
+    /// A note that is to be taken back and is not there.
+    #[error(
+        "nothing is noted of {machine} at {at} in these words and of this joint; `hydrotrace fleet note {} --machine {}` lists \
+         what is",
+        shell_argument(dataset),
+        shell_word(machine)
+    )]
+    NotNoted { machine: String, at: String, dataset: PathBuf },
     /// A machine that the dataset does not hold.
     #[error("no machine {machine:?}{}; the dataset has {present}", crate::suggest::suggestion(nearest.as_deref()))]
     NoMachine { machine: String, nearest: Option<String>, present: String },

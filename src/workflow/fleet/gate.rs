@@ -41,6 +41,9 @@ pub struct Gated {
     /// Machines, joints and metrics with too few runs of one plan to be judged.
     #[serde(default)]
     pub too_few: usize,
+    /// Runs of one plan that a joint takes to be judged among so many.
+    #[serde(default)]
+    pub fewest_runs: usize,
     /// Doubts about the data.
     pub remarks: Remarks,
 }
@@ -85,13 +88,22 @@ pub fn gate(
         program: PROGRAM.to_owned(),
         gates_kept: gates.iter().all(|gate| gate.kept),
         gates,
-        too_few: found.too_few,
+        too_few: found.too_few + found.trends.iter().filter(|trend| !is_judged(trend, &found)).count(),
+        fewest_runs: found.fewest_runs,
         remarks: found.remarks,
     })
 }
 
+/// Whether a trend could be found: of fewer runs none could, however fast it grows.
+fn is_judged(trend: &JointTrend, found: &Drift) -> bool {
+    trend.found || trend.runs >= found.fewest_runs
+}
+
 fn judged(gate: &Gate, found: &Drift, empty_is_kept: bool) -> GateResult {
-    let own = || found.trends.iter().filter(|trend| trend.metric == gate.metric && trend.unit == gate.unit);
+    let own = || {
+        let of_gate = |trend: &&JointTrend| trend.metric == gate.metric && trend.unit == gate.unit;
+        found.trends.iter().filter(of_gate).filter(|trend| is_judged(trend, found))
+    };
     let breaks = |trend: &&JointTrend| trend.found && trend.growth_per_day() > gate.most_per_day;
     let fastest = |a: &&JointTrend, b: &&JointTrend| a.growth_per_day().total_cmp(&b.growth_per_day());
     let (judged, broken_by) = (own().count(), own().filter(breaks).count());
@@ -143,6 +155,7 @@ mod tests {
             trends: slopes.iter().map(trend).collect(),
             maps: Vec::new(),
             too_few: 0,
+            fewest_runs: 5,
             remarks: Remarks::default(),
         }
     }
@@ -166,6 +179,9 @@ mod tests {
     fn a_limit_with_nothing_to_judge_is_not_kept_unless_that_is_allowed() {
         assert!(!judged(&limit(), &found(&[]), false).kept);
         assert!(judged(&limit(), &found(&[]), true).kept);
+        // Ten runs prove nothing among so many trends.
+        let many = Drift { fewest_runs: 11, ..found(&[(0.03, false)]) };
+        assert!(!judged(&limit(), &many, false).kept && is_judged(&found(&[(0.03, true)]).trends[0], &many));
     }
 
     #[test]
@@ -176,6 +192,7 @@ mod tests {
             gates: vec![judged(&limit(), &found(&[(0.02, true)]), false)],
             gates_kept: false,
             too_few: 3,
+            fewest_runs: 5,
             remarks: Remarks::default(),
         };
         is_written_and_read(&document, "fleet-gate.v1.schema.json", "hydrotrace fleet gate, version 1");

@@ -8,10 +8,10 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::{
-    dated::named_otherwise,
+    doubts,
     failure::FleetFailure,
     once::{Logged, is_gone, one_a_run},
-    run::{Run, date, days},
+    run::Run,
     sources::changed_ns,
     store::{is_unfinished, parts},
     tables::{self, Name},
@@ -135,6 +135,8 @@ impl History {
                 joints.entry(run.to_owned()).or_default().insert(joint.to_owned());
             }
         }
+        let analysed = |row: &Vec<Cell>| Some((row[0].as_text()?.to_owned(), row[11].as_text()?.to_owned()));
+        let analyses: BTreeMap<String, String> = runs.iter().filter_map(analysed).collect();
         history.take_runs(runs, &joints);
         let mut spoilt = BTreeSet::new();
         for path in found.iter().map(|part| part.path(Name::Remarks)).filter(|path| root.join(path).exists())
@@ -152,12 +154,14 @@ impl History {
         let wanted =
             |run: &Run| others || filter.machine.as_ref().is_none_or(|machine| *machine == run.machine);
         if dated {
-            history.leave_out_undated();
+            doubts::without_undated(&mut history.runs, &mut history.remarks);
         }
-        history.doubt_dates();
+        doubts::dates(&mut history.runs, &mut history.remarks);
         history
             .runs
             .retain(|run| wanted(run) && filter.since_us.is_none_or(|since_us| run.started_us >= since_us));
+        doubts::analyses(&history.runs, &analyses, &mut history.remarks);
+        doubts::spelled(&history.runs, &mut history.remarks);
         let index: BTreeMap<String, usize> =
             history.runs.iter().enumerate().map(|(k, run)| (run.id.clone(), k)).collect();
         if let Some(joint) = &filter.joint {
@@ -206,39 +210,6 @@ impl History {
         self.runs.retain(|run| !ids.contains(&run.id));
         let message = "runs at another time than their plan, or stopped on their way; left out";
         self.remarks.add(Code::OtherTime, (all - self.runs.len()) as u64, message);
-    }
-
-    /// A run that nobody knows the time of has no place in a history.
-    fn leave_out_undated(&mut self) {
-        let count = self.runs.iter().filter(|run| !run.is_dated()).count() as u64;
-        if let Some(first) = self.runs.iter().find(|run| !run.is_dated()) {
-            let message = format!(
-                "runs that say no date, neither in their stamps nor in their names (2026-03-06, 06.03.2026), as {}; left out",
-                first.log.rsplit('/').next().unwrap_or_default()
-            );
-            self.remarks.add(Code::Undated, count, message);
-        }
-        self.runs.retain(Run::is_dated);
-    }
-
-    /// Takes the dates of names where those of the stamps cannot be right, and says so.
-    fn doubt_dates(&mut self) {
-        let (mut count, mut message) = (0, String::new());
-        for run in self.runs.iter_mut().filter(|run| run.is_dated()) {
-            let Some(named_us) = named_otherwise(&run.log, run.started_us) else { continue };
-            if count == 0 {
-                let (log, at) = (run.log.rsplit('/').next(), date(days(run)).unwrap_or_default());
-                message = format!(
-                    "runs whose stamps say another half of a year than their names, as {} ({at}): was the clock set? The dates of \
-                     the names are taken",
-                    log.unwrap_or_default()
-                );
-            }
-            run.started_us = named_us;
-            count += 1;
-        }
-        self.remarks.add(Code::UnusableStamp, count, message);
-        self.runs.sort_by_key(|run| run.started_us);
     }
 
     fn check(&self, machine: &str) -> Result<(), FleetFailure> {
@@ -370,9 +341,9 @@ fn check_joint(joint: &str, present: BTreeSet<&str>) -> Result<(), FleetFailure>
     Err(FleetFailure::NoJoint { joint: joint.to_owned(), nearest, present })
 }
 
-const RUN: [&str; 11] = [
+const RUN: [&str; 12] = [
     "run_id", "machine", "started_at", "log_uri", "log_sha256", "error", "duration_s", "plan_is_command",
-    "rms", "peak", "log_etag",
+    "rms", "peak", "log_etag", "analysis_id",
 ];
 const START: [&str; 10] = [
     "run_id", "plan_id", "joint", "unit", "event_index", "planned_onset_s", "peak_error", "onset_delay_s",

@@ -6,10 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     arrange::place_of,
-    effect::{Effect, effect},
     failure::FleetFailure,
-    history::{By, Filter, History},
-    run::date,
+    history::{Filter, History},
+    run::{Run, date, days},
     store::{Part, Store, parts},
     tables::Name,
 };
@@ -62,27 +61,60 @@ pub struct Intervention {
     pub what: String,
 }
 
+/// An instant farther than this from all runs of the machine is a slip, days.
+const FAR_DAYS: f64 = 366.0;
+
 /// Notes what was done to a machine of the dataset, and gives it as documents have it; the same twice is one note.
 ///
 /// # Errors
 ///
-/// [`FleetFailure`] if there is no dataset or no such machine in it, or it cannot be written.
+/// [`FleetFailure`] if there is no dataset or no such machine or joint in it, if no run of it is within a year, or it cannot be
+/// written.
 pub fn note(root: &Path, note: &Note) -> Result<Intervention, FleetFailure> {
-    let filter = Filter { machine: Some(note.machine.clone()), ..Filter::default() };
-    History::read(root, &filter, false)?;
+    let Note { at_us, machine, joint, what } = note;
+    let filter = Filter { machine: Some(machine.clone()), joint: joint.clone(), since_us: None };
+    let history = History::read(root, &filter, false)?;
+    let apart_days = |run: &Run| (*at_us - run.started_us).abs() as f64 / 1e6 / SECONDS_PER_DAY;
+    let runs = || history.runs.iter();
+    if let Some(nearest) = runs().min_by(|a, b| apart_days(a).total_cmp(&apart_days(b)))
+        && apart_days(nearest) > FAR_DAYS
+    {
+        let [at, run] = [Intervention::from(note).at, date(days(nearest)).unwrap_or_default()];
+        return Err(FleetFailure::FarNote { machine: machine.clone(), at, run });
+    }
     let row = vec![
-        Cell::from(note.machine.as_str()),
-        Cell::Whole(note.at_us),
-        Cell::from(note.joint.as_deref()),
-        Cell::from(note.what.as_str()),
+        Cell::from(machine.as_str()),
+        Cell::Whole(*at_us),
+        Cell::from(joint.as_deref()),
+        Cell::from(what.as_str()),
     ];
-    let at = note.at_us.to_string();
-    let hash = hash([note.machine.as_str(), &at, note.joint.as_deref().unwrap_or_default(), &note.what]);
-    let part = Part { place: place_of(Some(note.at_us), &note.machine), hash };
     let table = Table { columns: Name::Interventions.columns(), rows: vec![row] };
-    let file = (part.path(Name::Interventions), table.encode(Name::Interventions.text())?);
+    let file = (note.place(), table.encode(Name::Interventions.text())?);
     Store::open(root)?.change(&[file], &[])?;
     Ok(note.into())
+}
+
+/// Takes back what was noted in these words.
+///
+/// # Errors
+///
+/// [`FleetFailure`] if nothing is noted so, or it cannot be taken back.
+pub fn take_back(root: &Path, note: &Note) -> Result<(), FleetFailure> {
+    let place = note.place();
+    if !root.join(&place).exists() {
+        let (machine, dataset) = (note.machine.clone(), root.to_owned());
+        return Err(FleetFailure::NotNoted { machine, at: Intervention::from(note).at, dataset });
+    }
+    Store::open(root)?.change(&[], &[place])
+}
+
+impl Note {
+    /// The file of the dataset that holds it and nothing else.
+    fn place(&self) -> String {
+        let Self { at_us, machine, joint, what } = self;
+        let hash = hash([machine.as_str(), &at_us.to_string(), joint.as_deref().unwrap_or_default(), what]);
+        Part { place: place_of(Some(*at_us), machine), hash }.path(Name::Interventions)
+    }
 }
 
 /// All that is noted, or of one machine only, in the order of time.
@@ -105,26 +137,6 @@ pub fn notes(root: &Path, machine: Option<&str>) -> Result<Vec<Note>, FleetFailu
     found.retain(|note| machine.is_none_or(|machine| machine == note.machine));
     found.sort();
     Ok(found)
-}
-
-/// The effect of what was done last, of the machine or of any; where it was done to one joint, of that one unless the
-/// filter names another.
-///
-/// # Errors
-///
-/// [`FleetFailure::NoNote`] if nothing is noted; otherwise as [`effect`].
-pub fn effect_of_last_note(
-    root: &Path,
-    machine: Option<&str>,
-    filter: &Filter,
-    by: &[By],
-) -> Result<Effect, FleetFailure> {
-    let last = notes(root, machine)?.pop().ok_or_else(|| FleetFailure::NoNote {
-        machine: machine.map(str::to_owned),
-        dataset: root.to_owned(),
-    })?;
-    let filter = Filter { joint: filter.joint.clone().or(last.joint), ..filter.clone() };
-    Ok(Effect { what: Some(last.what), ..effect(root, &last.machine, last.at_us, &filter, by)? })
 }
 
 impl From<&Note> for Intervention {

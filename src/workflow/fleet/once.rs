@@ -58,13 +58,17 @@ pub(super) fn one_a_run(
     rows.sort_by(|a, b| a.plan_is_command.cmp(&b.plan_is_command).then_with(|| by_age(a, b)));
     let none = BTreeSet::new();
     let of = |row: &Logged| joints.get(&row.run.id).unwrap_or(&none);
-    let begins = |row: &Logged| row.run.is_dated().then(|| (row.run.machine.clone(), row.run.started_us));
+    let begins = |row: &Logged| Some((row.run.machine.clone(), row.run.started_us));
     let of_run = kept(rows, begins, |row, before| {
-        let stamped = is_stamped(&row.run) && is_stamped(&before.run);
-        (stamped || are_beside(row, before))
+        // Packed, the same table has another content.
+        let identical = row.duration_s.to_bits() == before.duration_s.to_bits()
+            && row.errors == before.errors
+            && row.errors[0].is_some();
+        let at_once = row.run.is_dated()
+            && (is_stamped(&row.run) && is_stamped(&before.run) || are_beside(row, before))
             && (row.duration_s - before.duration_s).abs() <= SAME_DURATION_S
-            && (row.plan_is_command != before.plan_is_command || alike(row.errors, before.errors))
-            && of(row) == of(before)
+            && (row.plan_is_command != before.plan_is_command || alike(row.errors, before.errors));
+        (identical || at_once) && of(row) == of(before)
     });
     say("logs of a run that another log is of, too", &of_run, remarks);
     let mut runs: Vec<Run> = of_run.kept.into_iter().map(|row| row.run).collect();
@@ -100,7 +104,7 @@ fn alike(one: [Option<f64>; 2], other: [Option<f64>; 2]) -> bool {
 
 struct Kept {
     kept: Vec<Logged>,
-    /// Those that are left out, each with the one that stays.
+    /// Those that are left out and are there still, each with the one that stays.
     out: Vec<[String; 2]>,
 }
 
@@ -121,7 +125,8 @@ fn kept(
         let before = near.map(|place| &found.kept[*place]).find(|before| same(&row, before));
         if let Some(before) = before {
             let out = [row.run.log.clone(), before.run.log.clone()];
-            found.out.push(out);
+            // What was moved is no copy.
+            found.out.extend((!row.is_gone).then_some(out));
             continue;
         }
         if let Some(key) = key {
@@ -179,7 +184,7 @@ mod tests {
         assert_eq!(logs(rows()), (vec!["M3/a".into(), "M3/b".into()], 1));
         let mut gone = rows();
         gone[1].is_gone = true;
-        assert_eq!(logs(gone), (vec!["A/a".into(), "M3/b".into()], 1));
+        assert_eq!(logs(gone), (vec!["A/a".into(), "M3/b".into()], 0));
     }
 
     #[test]
@@ -188,12 +193,14 @@ mod tests {
         let mut live = logged("M3/run", day, "x");
         live.plan_is_command = true;
         let with_plan = logged("M3/run-with-plan", day, "y");
-        let named = |log: &str| {
+        let named = |log: &str, rms: f64| {
             let log = format!("M3/2026-02-25/{log}");
             // Midnight, as the name says.
-            logged(&log, began_ns(&log, None).unwrap() / 1_000_000_000, &log)
+            let begins_s = began_ns(&log, None).unwrap() / 1_000_000_000;
+            Logged { errors: [Some(rms), Some(0.03)], ..logged(&log, begins_s, &log) }
         };
-        assert_eq!(logs(vec![named("1"), named("2")]).1, 0, "a date is that of many runs");
+        assert_eq!(logs(vec![named("1", 0.01), named("2", 0.0101)]).1, 0, "a date is that of many runs");
+        assert_eq!(logs(vec![named("1.csv", 0.01), named("1.csv.gz", 0.01)]).1, 1, "packed");
         assert_eq!(logs(vec![live.clone(), with_plan.clone()]), (vec!["M3/run-with-plan".into()], 1));
         // Of other joints, of another machine, later, longer, of other errors, or without a date: other runs.
         let mut longer = logged("M3/longer", day, "z");
@@ -210,6 +217,13 @@ mod tests {
         ];
         assert_eq!(logs(rows).1, 0);
         let undated = crate::log::UNDATED_NS / 1_000_000_000;
-        assert_eq!(logs(vec![logged("M3/1", undated, "a"), logged("M3/2", undated, "b")]).1, 0);
+        assert_eq!(
+            logs(vec![
+                logged("M3/1", undated, "a"),
+                Logged { duration_s: 21.0, ..logged("M3/2", undated, "b") }
+            ])
+            .1,
+            0
+        );
     }
 }

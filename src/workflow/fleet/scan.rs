@@ -32,12 +32,17 @@ use crate::{
         LogError, ReadOptions,
         dataset::{Cell, read_table},
     },
+    remark::Code,
     replay::Rules,
     workflow::report::{self, DelayModel, Findings, Gates, Report, ReportFailure, analysis_id, hash},
 };
 
-/// Logs of a batch: what a kill loses at most, and what is held in memory.
-const BATCH: usize = 512;
+/// Logs of the first batch, and of the largest one: what is held in memory. Each has as many as all before it, so that a kill
+/// loses no more than was kept.
+const FIRST_BATCH: usize = 16;
+const LARGEST_BATCH: usize = 512;
+/// What ends the identity of an analysis that fits, too: all else is the same.
+pub(super) const FITTED: &str = "-fit";
 /// How often a log is tried at once whose file cannot be read.
 const TRIES: u64 = 3;
 
@@ -119,8 +124,12 @@ pub fn scan(
     seen: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
 ) -> Result<Scanned, FleetFailure> {
     let beside = Beside { gates: &Gates::default(), drawn: false, again: &|_| false, analysed: &|_, _| () };
-    let (found, tables_left) = sources(&inputs.sources)?;
-    Ok(Scanned { tables_left, ..scan_these(found, inputs, &beside, seen)? })
+    let (found, tables_left, empty) = sources(&inputs.sources)?;
+    let mut scanned = Scanned { tables_left, ..scan_these(found, inputs, &beside, seen)? };
+    let lead_nowhere =
+        |text: &String| scanned.remarks.add(Code::MissingFile, 1, format!("no log in {text:?}"));
+    empty.iter().for_each(lead_nowhere);
+    Ok(scanned)
 }
 
 /// The same of these logs, whatever the sources; `beside` has its part of each.
@@ -157,7 +166,11 @@ pub(in crate::workflow) fn scan_these(
         0 => cores * if pending.iter().any(|log| log.source.is_remote()) { 4 } else { 1 },
         workers => workers,
     };
-    for batch in pending.chunks(BATCH) {
+    let mut done_before = 0;
+    while done_before < pending.len() {
+        let size = done_before.clamp(FIRST_BATCH, LARGEST_BATCH).min(pending.len() - done_before);
+        let batch = &pending[done_before..done_before + size];
+        done_before += size;
         let rows = at_once(batch.len(), workers, &ended, |k| {
             let (rows, failure) = analysed(&batch[k], &analysis_id, inputs, beside);
             let failed = failed.fetch_add(usize::from(failure.is_some()), Ordering::Relaxed);
@@ -188,8 +201,8 @@ pub(in crate::workflow) fn scan_these(
 /// The analysis, with all that rows depend on beside the log.
 pub fn own_analysis_id(inputs: &Inputs) -> String {
     let Inputs { machine, read, rules, fit, .. } = inputs;
-    let fitted = fit.then(|| "fit".to_owned());
-    hash([analysis_id(rules), format!("{read:?}"), format!("{machine:?}")].into_iter().chain(fitted))
+    let id = hash([analysis_id(rules), format!("{read:?}"), format!("{machine:?}")]);
+    if *fit { id + FITTED } else { id }
 }
 
 /// What the dataset holds, by log.

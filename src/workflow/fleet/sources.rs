@@ -87,22 +87,26 @@ fn ends(name: &str, ending: &str) -> bool {
     name.to_lowercase().ends_with(ending)
 }
 
-/// The logs of all sources, each once, in the order of their paths; and how many tables beside them were not asked for.
-pub(super) fn sources(texts: &[String]) -> Result<(Vec<Source>, usize), FleetFailure> {
-    let mut found = Found::default();
+/// The logs of all sources, each once, in the order of their paths; how many tables beside them were not asked for; and the
+/// sources that lead to no log, where others do.
+pub(super) fn sources(texts: &[String]) -> Result<(Vec<Source>, usize, Vec<String>), FleetFailure> {
+    let (mut found, mut empty) = (Found::default(), Vec::new());
     for text in texts {
-        let before = found.logs.len();
-        add(text, Path::new(""), &mut found)?;
-        if found.logs.len() == before && !Path::new(text).exists() {
-            return Err(FleetFailure::NoLogs { text: text.clone() });
+        let mut own = Found::default();
+        add(text, Path::new(""), &mut own)?;
+        if own.logs.is_empty() && !Path::new(text).exists() {
+            empty.push(text.clone());
+        }
+        found.left_out += own.left_out;
+        for (path, source) in own.logs {
+            found.logs.entry(path).or_insert(source);
         }
     }
-    let first = texts.first().cloned().unwrap_or_default();
     let left_out = found.left_out;
     if found.logs.is_empty() {
-        Err(FleetFailure::NoLogs { text: first })
+        Err(FleetFailure::NoLogs { text: texts.first().cloned().unwrap_or_default() })
     } else {
-        Ok((found.each_once(), left_out))
+        Ok((found.each_once(), left_out, empty))
     }
 }
 
@@ -325,7 +329,7 @@ mod tests {
         let names = |texts: &[&str]| -> Vec<String> {
             let texts: Vec<String> =
                 texts.iter().map(|text| at(text).to_string_lossy().into_owned()).collect();
-            let (found, _) = sources(&texts).unwrap();
+            let (found, _, _) = sources(&texts).unwrap();
             found
                 .iter()
                 .map(|s| s.path.strip_prefix(&folder).unwrap().to_string_lossy().into_owned())

@@ -209,6 +209,9 @@ impl History {
         if !grown && !broken {
             return None;
         }
+        if self.goes_on(runs, run, &mut *fits).is_some() {
+            return None;
+        }
         let (newest, place) = (*runs.last()?, |k: &usize| self.places[*k]);
         let older = fits(&runs.iter().map(place).collect::<Vec<_>>())?;
         let own = fits(&[place(&run)])?;

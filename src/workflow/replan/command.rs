@@ -2,13 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::ReplanFailure;
+use super::{ReplanFailure, subject::Subject};
 use crate::{
-    fit::{Fit, JointFit, Learning, Learnt, Oscillation, Room, SHARE, STEP_S, Step, Trial, learn, predict},
-    math::{State, lowpass, range},
-    plan::{BETWEEN, Interpolation, Limit, Margin, POINTS_HZ, Setup, SpeedRoom},
+    fit::{
+        Fit, JointFit, Learning, Learnt, Oscillation, Room, SHARE, STEP_S, Step, Stop, Trial, learn, predict,
+    },
+    math::{State, range},
+    plan::{BETWEEN, Interpolation, Limit, Margin, Setup, SpeedRoom},
     series::{JointKind, Series, Track, align},
-    spline::{Motion, Quantity, Samples},
     units::DEGREE_RAD,
 };
 
@@ -17,12 +18,6 @@ const SHARES: [f64; 6] = [0.97, 0.9, 0.75, 0.5, 0.25, 0.0];
 
 /// Times that what rods, pump and tool leave is dealt anew.
 const ROUNDS: usize = 4;
-
-/// Accelerations of samples are told below this, Hz.
-const KNOWN_HZ: f64 = 2.0;
-
-/// A plan and a motion are the same if their angles differ by no more, rad.
-const SAME_RAD: f64 = 1e-6;
 
 /// A kept correction below this is none, rad.
 const NONE_RAD: f64 = 1e-5;
@@ -57,6 +52,10 @@ pub struct JointCommand {
     /// command of a whole run is kept. Zero if it did nowhere.
     #[serde(default)]
     pub stalled_rad: f64,
+    /// Where the joint comes no farther, whatever is sent: a stop, a switch or a load; null where no runs tell that. Nothing is learnt
+    /// beyond it.
+    #[serde(default)]
+    pub held: Option<Stop>,
     /// Predicted root mean square error of the plan sent as it is, rad; null if the fit does not know the joint.
     pub plain_rms_rad: Option<f64>,
     /// The same of the command, rad.
@@ -109,16 +108,6 @@ impl Commanded {
     pub fn applied(&self) -> bool {
         self.joints.iter().any(JointCommand::applied)
     }
-}
-
-/// A plan with what is known of it.
-pub(super) struct Subject<'a> {
-    pub(super) plan: &'a Series,
-    /// Its motion and when that starts, s.
-    pub(super) motion: Option<(Motion, f64)>,
-    pub(super) setup: Option<&'a Setup>,
-    /// Points a second of a trajectory to send: what the plan needs, where its motion is known, but no more than there are samples.
-    pub(super) points_hz: f64,
 }
 
 /// Where the limits are unknown and a joint reaches its own, a command leaves the range of its plan by no more than this, rad,
@@ -282,65 +271,6 @@ fn states(planned: &[[f64; 4]], correction: &[[f64; 3]], share: f64) -> Vec<Stat
     planned.iter().zip(correction).map(one).collect()
 }
 
-impl<'a> Subject<'a> {
-    pub(super) fn new(plan: &'a Series, motion: Option<(Motion, f64)>, setup: Option<&'a Setup>) -> Self {
-        let known = motion.as_ref().zip(setup);
-        let points_hz =
-            known.map_or(POINTS_HZ[0], |((motion, _), setup)| setup.points_hz(motion).min(1.0 / STEP_S));
-        Self { plan, motion, setup, points_hz }
-    }
-
-    /// Angle, speed, acceleration and jerk of each joint's plan every step, and whether they are those of its motion; otherwise
-    /// they are smoothed differences.
-    fn derivatives(&self) -> (Vec<Vec<[f64; 4]>>, bool) {
-        let exact: Option<Vec<Vec<[f64; 4]>>> =
-            self.plan.tracks.iter().map(|track| self.by_motion(track)).collect();
-        let Some(exact) = exact else {
-            return (self.plan.tracks.iter().map(by_differences).collect(), false);
-        };
-        (exact, true)
-    }
-
-    /// `None` if the samples are not those of the motion.
-    fn by_motion(&self, track: &Track) -> Option<Vec<[f64; 4]>> {
-        let (motion, starts_s) = self.motion.as_ref()?;
-        let joint = self.setup?.joint_names().iter().position(|name| name == track.name())?;
-        let local_s: Vec<f64> = track.t_s().iter().map(|t_s| t_s - starts_s).collect();
-        let mut samples = Samples::default();
-        motion.sample(&local_s, Quantity::Jerk, &mut samples);
-        let position = samples.of(Quantity::Position, joint);
-        let same = track.position().iter().zip(position).all(|(a, b)| (a - b).abs() < SAME_RAD);
-        let end_s = motion.duration_s();
-        let state = |k: usize| {
-            let inside = |quantity| {
-                let within = (0.0..=end_s).contains(&local_s[k]);
-                if within { samples.of(quantity, joint)[k] } else { 0.0 }
-            };
-            let speed = track.velocity().map_or_else(|| inside(Quantity::Velocity), |speed| speed[k]);
-            [track.position()[k], speed, inside(Quantity::Acceleration), inside(Quantity::Jerk)]
-        };
-        same.then(|| (0..track.len()).map(state).collect())
-    }
-}
-
-/// Angle, speed, acceleration and jerk by differences.
-fn by_differences(track: &Track) -> Vec<[f64; 4]> {
-    let (position, last) = (track.position(), track.len().saturating_sub(1));
-    let slopes = |values: &[f64]| -> Vec<f64> {
-        let slope = |k: usize| {
-            let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
-            (values[after] - values[before]) / ((after - before).max(1) as f64 * STEP_S)
-        };
-        (0..values.len()).map(slope).collect()
-    };
-    let speed = track.velocity().map_or_else(|| slopes(position), <[f64]>::to_vec);
-    let mut smooth = speed.clone();
-    lowpass(&mut smooth, KNOWN_HZ, STEP_S);
-    let acceleration = slopes(&smooth);
-    let jerk = slopes(&acceleration);
-    (0..track.len()).map(|k| [position[k], speed[k], acceleration[k], jerk[k]]).collect()
-}
-
 /// What is said of each joint.
 fn joints(
     fit: &Fit,
@@ -382,6 +312,7 @@ fn joints(
             unseen_s: made.unseen_s,
             shifted_rad: made.shifted_rad,
             stalled_rad: most(&mut made.stalled.iter().map(|held| held.more_rad)),
+            held: made.stop,
             plain_rms_rad: rms_rad(track)?,
             compensated_rms_rad: rms_rad(sent)?,
             peak_correction_rad: share * most(&mut made.correction.iter().map(|made| made[0])),

@@ -3,7 +3,10 @@
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 
-use super::command::{Commanded, Subject, commanded, stride};
+use super::{
+    command::{Commanded, commanded, stride},
+    subject::Subject,
+};
 use crate::{
     arm::Arm,
     fit::{Fit, Learning, Observation, STEP_S, Trial, fit},

@@ -2,11 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::history::{History, PastRun};
+use super::history::{History, PastRun, WORTH};
 use crate::fit::MORE_ERROR;
-
-/// A run whose mean peak is not below this share of the best before it was not worth its correction.
-const WORTH: f64 = 0.9;
 
 /// A mean peak up to this times the least is as good.
 const NEARLY: f64 = 1.05;
@@ -150,7 +147,7 @@ impl History {
         let because = if self.runs[last].corrected {
             let newest = commands.split_last().filter(|(_, before)| before.len() > 1);
             let gained = newest.and_then(|((_, rad), before)| Some(*rad < WORTH * best(before)?.1));
-            (gained == Some(false)).then_some(KeepReason::GainedLittle)
+            (gained == Some(false) && !self.follows).then_some(KeepReason::GainedLittle)
         } else {
             let corrections = self.failures(&commands);
             (corrections >= FAILURES).then_some(KeepReason::Failed { corrections })
@@ -170,7 +167,7 @@ impl History {
         let peaks = self.peaks_rad();
         let (last, (run, best_rad)) = (peaks.last()?, self.best()?);
         let because = KeepReason::ExpectedWorse { expected_rad };
-        (expected_rad > WORSE * best_rad).then_some(Decision::Keep {
+        (expected_rad > WORSE * best_rad && !self.follows).then_some(Decision::Keep {
             run,
             because,
             best_rad,

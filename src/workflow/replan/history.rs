@@ -28,6 +28,12 @@ const OFTEN: usize = 2;
 /// Runs after a change from which on it is known how the machine is now.
 const KNOWN_AFTER: usize = 2;
 
+/// Share of what the newest run was off by that a machine which goes on changing adds to the next.
+const GOES_ON: f64 = 0.7;
+
+/// A run whose mean peak is not below this share of the best before it was not worth its correction.
+pub(super) const WORTH: f64 = 0.9;
+
 /// Share of the usual gain that is left however much a command broke its promise.
 const LEAST_TRUST: f64 = 0.5;
 
@@ -61,6 +67,7 @@ pub struct PastRun {
 #[derive(Default)]
 pub(super) struct History {
     pub(super) series: Vec<(Series, Series)>,
+    pub(super) plan: Series,
     /// Places of their logs among all.
     pub(super) places: Vec<usize>,
     pub(super) runs: Vec<PastRun>,
@@ -70,6 +77,8 @@ pub(super) struct History {
     pub(super) changes: usize,
     /// Whether the first of these runs is left because what was sent in it, as before, came to more.
     pub(super) drifts: bool,
+    /// Whether it goes on changing one way: what was sent before the newest run is no guide.
+    pub(super) follows: bool,
     /// In whose unit means over the joints are told.
     pub(super) kind: JointKind,
     /// Largest difference of mean peaks by which that was told, rad.
@@ -86,7 +95,7 @@ impl History {
         plan: &Series,
         rules: &Rules,
     ) -> Result<Self, ReplanFailure> {
-        let mut history = Self { kind: plan.common_kind(), ..Self::default() };
+        let mut history = Self { kind: plan.common_kind(), plan: plan.clone(), ..Self::default() };
         let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
         let rest_s = moving_s(plan).map_or(0.0, |[_, moving_to_s]| end_s - moving_to_s);
         let mut after_s = AFTER_S;
@@ -169,6 +178,11 @@ impl History {
     /// What is to be expected beside all else of a machine that changed, rad: in the mean, where it did more than once, and
     /// what nine runs of ten stay below.
     pub(super) fn unsteady_rad(&self) -> [f64; 2] {
+        if self.follows {
+            // By as much again, less what is learnt of it.
+            let now_rad = self.runs.last().and_then(|run| run.mean_peak_rad).unwrap_or(0.0);
+            return [GOES_ON * now_rad, now_rad];
+        }
         let again = self.changes >= OFTEN;
         // What was made and measured since it changed once tells what to expect.
         if !again && self.runs.len() > KNOWN_AFTER {

@@ -11,7 +11,7 @@ const MOST_GROWTH: f64 = 10.0;
 /// What to plan again, and what may be changed.
 #[derive(Debug, Clone)]
 pub struct Inputs {
-    /// Runs, each a file or a bag directory; the plan is that of the last.
+    /// Runs, each a file or a bag directory; the plan is that of the last by their stamps, or here where not all say a date.
     pub logs: Vec<PathBuf>,
     /// What to read of each.
     pub read: ReadOptions,

@@ -16,11 +16,14 @@ mod last;
 mod left_out;
 mod limits;
 mod machine;
+mod one_way;
+mod order;
 mod outcome;
 mod predicted;
 mod retime;
 mod samples;
 mod shape;
+mod subject;
 mod unclear;
 mod warp;
 
@@ -54,13 +57,15 @@ use crate::{
     units::DEGREE_RAD,
     workflow::{carried::rest::PLAN_LEAD_S, names::told_apart, plan::Shaping},
 };
-use command::{Subject, commanded};
+use command::commanded;
 use correctable::correctable;
 use history::History;
 use last::Last;
 use left_out::without_useless;
 use machine::machine;
+use order::in_order;
 use samples::sampled;
+use subject::Subject;
 use warp::Warp;
 
 /// Timings of the search that are looked at with their commands.
@@ -83,7 +88,9 @@ pub fn run(
 ) -> Result<Replanned, ReplanFailure> {
     inputs.check()?;
     let observed = fit::observed(&inputs.logs, &inputs.read).map_err(fit::FitFailure::from)?;
-    let (inputs, observed, doubts) = without_useless(inputs, observed);
+    let (inputs, observed, mut doubts) = in_order(inputs, observed);
+    let (inputs, observed, useless) = without_useless(&inputs, observed);
+    doubts.extend(useless);
     let (inputs, observed) = (&inputs, &observed[..]);
     let path = inputs.logs.last().ok_or(ReplanFailure::NoLog)?;
     for (path, recording) in inputs.logs.iter().zip(observed) {
@@ -100,10 +107,12 @@ pub fn run(
     let chosen = |places: &mut dyn Iterator<Item = usize>| -> (Vec<String>, Vec<&Recording>) {
         places.map(|k| (names[k].clone(), &observed[k])).unzip()
     };
-    let (others, changed) = history.without_another_machine(&mut |places| {
+    let mut fits = |places: &[usize]| {
         let (logs, observed) = chosen(&mut places.iter().copied());
         inputs.limits.is_none().then(|| fit::of(&logs, &observed).ok())?.map(|fitted| fitted.fit)
-    });
+    };
+    let (others, changed) = history.without_another_machine(&mut fits);
+    let goes_on = history.follow(&mut fits);
     let (logs, own) = chosen(&mut (0..observed.len()).filter(|k| !others.contains(k)));
     let (fit, fitted_to, mut remarks) = machine(inputs, &logs, &own)?;
     remarks.extend(doubts);
@@ -118,6 +127,9 @@ pub fn run(
             );
             remarks.add(Code::MachineChanged, history.changes as u64, message);
         }
+    }
+    if let Some(message) = goes_on {
+        remarks.add(Code::MachineChanged, 1, message);
     }
     // The fit is to what was sent, but the next command is to follow the plan.
     let doubts = observed.iter().flat_map(|run| run.remarks.as_slice());
@@ -308,16 +320,18 @@ impl Maker<'_> {
         };
         let gain = inputs.learning.gain * if kept { history.trust() } else { 1.0 };
         let anew = kept && history.anew();
-        let learning = Learning { gain, keep, anew, ..inputs.learning };
+        let learning = Learning { gain, keep, anew, follow: kept && history.follows, ..inputs.learning };
         let subject = Subject::new(&plan, motion, *setup);
         let points_hz = subject.points_hz;
         let command = precompensates.then(|| commanded(fit, &subject, &trials, learning)).transpose()?;
         let sent = command.as_ref().map_or(&plan, |command| &command.series);
         let newest = keep.unwrap_or(trials.len().saturating_sub(1));
         let base = trials.get(newest).map(|trial| (trial.sent, trial.measured));
-        let spread_rad =
-            |name: &str| command.as_ref()?.joints.iter().find(|joint| joint.name == name)?.spread_rad;
-        let (predicted, responses) = promised(fit, &plan, sent, base, spread_rad, &inputs.rules)?;
+        let joints = || command.iter().flat_map(|command| &command.joints);
+        let learnt = |name: &str| {
+            joints().find(|joint| joint.name == name).map_or((None, None), |one| (one.spread_rad, one.held))
+        };
+        let (predicted, responses) = promised(fit, &plan, sent, base, learnt, &inputs.rules)?;
         let predicted = if kept { predicted.unsteady(history.unsteady_rad()) } else { predicted };
         Ok(Candidate { new, plan, points_hz, command, predicted, responses })
     }

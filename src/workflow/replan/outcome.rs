@@ -210,6 +210,16 @@ pub(super) fn replanned(
             );
             remarks.add(Code::UnlikePlan, 1, message);
         }
+        for (joint, stop) in command.joints.iter().filter_map(|joint| Some((joint, joint.held?))) {
+            let message = format!(
+                "{} comes to {} and no farther, whatever is sent: a stop, a limit switch or a load holds it, {} before the end of its \
+                 plan; no command moves it there, and none pushes more than the plan does. A task that ends before it is what helps",
+                joint.name,
+                joint.kind.says(stop.at_rad),
+                joint.kind.says(stop.beyond_rad)
+            );
+            remarks.add(Code::BeyondLimit, 1, message);
+        }
         for joint in command.joints.iter().filter(|joint| joint.stalled_rad > 0.0) {
             let message = format!(
                 "{} more of a correction gained nothing on {}: a limit that no file tells holds it, such as its valve or a pump that \

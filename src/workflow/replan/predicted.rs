@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{history::SAME, warp::unexplained};
 use crate::{
-    fit::{Fit, FitError, predict},
+    fit::{Fit, FitError, Stop, predict},
     replay::{Kind, Rules, replay},
     series::{Pair, Series, Track, align},
 };
@@ -79,7 +79,7 @@ pub struct PredictedTransition {
 ///
 /// [`FitError`] for a plan longer than an hour.
 pub fn predicted(fit: &Fit, plan: &Series, sent: &Series, rules: &Rules) -> Result<Predicted, FitError> {
-    Ok(promised(fit, plan, sent, None, |_| None, rules)?.0)
+    Ok(promised(fit, plan, sent, None, |_| (None, None), rules)?.0)
 }
 
 /// How a joint is expected to answer.
@@ -105,7 +105,7 @@ const OF_CHANGE: [f64; 2] = [0.02, 0.03];
 const OF_CHANGE_AGAIN: [f64; 2] = [0.02, 0.06];
 
 /// The same with the responses behind it, from what was sent and what came in a run of this plan, if one is known: the model then
-/// tells only what changes.
+/// tells only what changes. `learnt` gives what a joint did differently from run to run, rad, and where it is held.
 ///
 /// # Errors
 ///
@@ -115,7 +115,7 @@ pub fn promised(
     plan: &Series,
     sent: &Series,
     run: Option<(&Series, &Series)>,
-    spread_rad: impl Fn(&str) -> Option<f64>,
+    learnt: impl Fn(&str) -> (Option<f64>, Option<Stop>),
     rules: &Rules,
 ) -> Result<(Predicted, Vec<Response>), FitError> {
     let left = |name: &str| {
@@ -124,7 +124,7 @@ pub fn promised(
             let (changed_rad, corrected_rad) = (changed_rad(before, sent), changed_rad(plan, sent));
             if changed_rad < SAME_RAD.max(SAME * corrected_rad) { 0.0 } else { changed_rad }
         });
-        Left::of(fit, name, changed, spread_rad(name))
+        Left::of(fit, name, changed, learnt(name).0)
     };
     let (mut pairs, mut responses) = (Vec::new(), Vec::new());
     for track in &plan.tracks {
@@ -133,7 +133,11 @@ pub fn promised(
         let before =
             run.and_then(|(sent, came)| Some((sent.track(track.name())?, came.track(track.name())?)));
         let response = match before {
-            Some((sent, came)) => changed(came, &predict(&joint.model, sent)?, response),
+            Some((sent, came)) => {
+                let held = learnt(track.name()).1;
+                let held = |t_s: f64| held.is_some_and(|stop| stop.is_before(track.held_at(t_s).position));
+                changed(came, &predict(&joint.model, sent)?, response, held)
+            }
             None => response,
         };
         pairs.extend(align(track, &response));
@@ -151,10 +155,16 @@ fn changed_rad(before: &Track, sent: &Track) -> f64 {
     sent.t_s().iter().zip(sent.position()).map(apart).fold(0.0, f64::max)
 }
 
-/// What came before, and what the model says that changes.
-fn changed(came: &Track, modelled_before: &Track, modelled: Track) -> Track {
+/// What came before, and what the model says that changes but where the joint is held.
+fn changed(came: &Track, modelled_before: &Track, modelled: Track, held: impl Fn(f64) -> bool) -> Track {
     let position = (modelled.t_s().iter().zip(modelled.position()))
-        .map(|(t_s, now)| now + unexplained(came, modelled_before, *t_s))
+        .map(|(t_s, now)| {
+            if held(*t_s) {
+                came.held_at(*t_s).position
+            } else {
+                now + unexplained(came, modelled_before, *t_s)
+            }
+        })
         .collect();
     Track::of(modelled.kind(), modelled.name(), modelled.t_s(), position, &[]).unwrap_or(modelled)
 }

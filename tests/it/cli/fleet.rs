@@ -241,7 +241,10 @@ fn what_is_wrong_with_a_question_is_said() {
     let (code, _, error) = said(&run_line(folder.path(), "fleet drift data --machine M01"));
     assert!(code == 1 && error.contains("did you mean \"M00\"?"), "{error}");
     let (code, out, _) = said(&run_line(folder.path(), "fleet drift data"));
-    assert!(code == 0 && out.contains("no joint has five runs of one plan"), "{out}");
+    assert!(
+        code == 0 && out.contains("no joint has five runs of one plan, begun at different times,"),
+        "{out}"
+    );
 }
 
 #[cfg(unix)]

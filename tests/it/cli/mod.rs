@@ -22,6 +22,7 @@ mod join;
 mod layout;
 #[cfg(unix)]
 mod next_run;
+mod other_machines;
 mod output;
 #[cfg(unix)]
 mod pasted;

@@ -3,7 +3,7 @@
 use std::{fmt::Write as _, fs};
 
 use super::replan::{check, table, with_run};
-use crate::support::{clean, json, run_line, said, sample, scratch, stderr, stdout};
+use crate::support::{clean, fleet::small_log, json, run_line, said, sample, scratch, stderr, stdout};
 
 #[test]
 fn a_task_that_begins_elsewhere_is_refused_and_bounds_hold_for_the_next_line() {
@@ -270,4 +270,24 @@ fn a_machine_that_oscillates_by_itself_is_refused_with_its_frequency() {
     assert_eq!(run.status.code(), Some(1), "{}", stdout(&run));
     let said = stderr(&run);
     assert!(said.contains("J1 oscillates by itself at 1.1"), "{said}");
+}
+
+/// A pattern of names gives `run-10` before `run-2`.
+#[test]
+fn the_newest_run_is_that_by_its_stamps() {
+    let folder = scratch();
+    let folder = folder.path();
+    for (day, name) in [(1, "run-1"), (2, "run-2"), (10, "run-10")] {
+        let bytes = small_log("M1", day, 40 + day as u64, [0.15, 0.2]);
+        fs::write(folder.join(format!("{name}.mcap")), bytes).unwrap();
+    }
+    let [right, wrong] = ["run-1.mcap run-2.mcap run-10.mcap", "run-1.mcap run-10.mcap run-2.mcap"]
+        .map(|runs| json(folder, &format!("replan {runs} --keep-plan -o next.mcap --force")));
+    let logs = |found: &serde_json::Value| -> Vec<String> {
+        found["runs"].as_array().unwrap().iter().map(|run| run["log"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!((logs(&wrong), logs(&wrong)[2].as_str()), (logs(&right), "run-10.mcap"));
+    assert!(wrong["remarks"].to_string().contains("taken as run-1.mcap, run-2.mcap, run-10.mcap"), "{wrong}");
+    assert!(!right["remarks"].to_string().contains("reordered"), "{}", right["remarks"]);
+    assert_eq!(right["command"], wrong["command"]);
 }

@@ -132,6 +132,18 @@ fn a_recording_comes_in_parts() {
 #[test]
 #[cfg(unix)]
 fn packets_are_recorded_until_an_interrupt_ends_the_log() {
+    packets_are_recorded_until("-INT");
+}
+
+/// As where a session on another machine breaks off.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_terminal_that_is_closed_ends_the_log() {
+    packets_are_recorded_until("-HUP");
+}
+
+#[cfg(unix)]
+fn packets_are_recorded_until(signal: &str) {
     let folder = tempfile::tempdir().unwrap();
     let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let address = format!("127.0.0.1:{port}");
@@ -152,7 +164,7 @@ fn packets_are_recorded_until_an_interrupt_ends_the_log() {
         sleep(Duration::from_millis(1));
     }
     until("log", || fs::metadata(&log).is_ok_and(|found| found.len() > 2000));
-    let kill = Command::new("kill").args(["-INT", &recorder.id().to_string()]).status().unwrap();
+    let kill = Command::new("kill").args([signal, &recorder.id().to_string()]).status().unwrap();
     assert!(kill.success());
     let (code, out, error) = said(&recorder.wait_with_output().unwrap());
     assert!(code == 0 || code == 3, "{code} {out} {error}");

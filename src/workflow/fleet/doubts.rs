@@ -1,0 +1,130 @@
+//! Doubts about the runs of a history: when they were, how they were analysed, and what their machines are called.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{
+    dated::named_otherwise,
+    run::{Run, date, days},
+    scan::FITTED,
+};
+use crate::remark::{Code, Remarks};
+
+fn name(run: &Run) -> &str {
+    run.log.rsplit('/').next().unwrap_or_default()
+}
+
+/// A run that nobody knows the time of has no place in a history.
+pub(super) fn without_undated(runs: &mut Vec<Run>, remarks: &mut Remarks) {
+    let count = runs.iter().filter(|run| !run.is_dated()).count() as u64;
+    if let Some(first) = runs.iter().find(|run| !run.is_dated()) {
+        let message = format!(
+            "runs that say no date, neither in their stamps nor in their names (2026-03-06, 06.03.2026), as {}; left out",
+            name(first)
+        );
+        remarks.add(Code::Undated, count, message);
+    }
+    runs.retain(Run::is_dated);
+}
+
+/// Takes the dates of names where those of the stamps cannot be right, and says so; and where they may not be.
+pub(super) fn dates(runs: &mut [Run], remarks: &mut Remarks) {
+    let mut doubts: [(u64, String); 2] = Default::default();
+    for run in runs.iter_mut().filter(|run| run.is_dated()) {
+        let Some((named_us, surely)) = named_otherwise(&run.log, run.started_us) else { continue };
+        let (count, example) = &mut doubts[usize::from(surely)];
+        if *count == 0 {
+            *example = format!("as {} ({})", name(run), date(days(run)).unwrap_or_default());
+        }
+        *count += 1;
+        if surely {
+            run.started_us = named_us;
+        }
+    }
+    let words = [["a month or more from", "stamps"], ["half a year or more from", "names"]];
+    for ((count, example), [apart, taken]) in doubts.into_iter().zip(words) {
+        let message = format!(
+            "runs whose stamps are {apart} the dates in their names, {example}: was the clock set? The dates of the {taken} are \
+             taken"
+        );
+        remarks.add(Code::UnusableStamp, count, message);
+    }
+    runs.sort_by_key(|run| run.started_us);
+}
+
+/// Says which runs were analysed otherwise than most: what differs may be the analysis alone.
+pub(super) fn analyses(runs: &[Run], analyses: &BTreeMap<String, String>, remarks: &mut Remarks) {
+    let mut groups: BTreeMap<&str, Vec<&Run>> = BTreeMap::new();
+    for run in runs {
+        let analysis = analyses.get(&run.id).map_or("", |id| id.strip_suffix(FITTED).unwrap_or(id));
+        groups.entry(analysis).or_default().push(run);
+    }
+    let most = groups.values().map(Vec::len).max().unwrap_or_default();
+    let mut others = groups.values().filter(|own| own.len() < most).flatten();
+    let Some(first) = others.next() else {
+        // As many of each.
+        let second = groups.values().nth(1).and_then(|own| own.first());
+        second.into_iter().for_each(|run| otherwise(run, most, remarks));
+        return;
+    };
+    otherwise(first, 1 + others.count(), remarks);
+}
+
+fn otherwise(first: &Run, count: usize, remarks: &mut Remarks) {
+    let message = format!(
+        "runs that were analysed by other options or another version than the others, as {}: what differs may be that alone; a \
+         scan with one set of options analyses anew those whose logs are there",
+        name(first)
+    );
+    remarks.add(Code::MeasuredOtherwise, count as u64, message);
+}
+
+/// Machines whose names differ in case or separators alone are called one by people.
+pub(super) fn spelled(runs: &[Run], remarks: &mut Remarks) {
+    let mut spellings: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
+    for run in runs {
+        let plain =
+            run.machine.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
+        spellings.entry(plain).or_default().insert(&run.machine);
+    }
+    let twice = spellings.values().filter(|names| names.len() > 1);
+    for names in twice {
+        let names: Vec<&str> = names.iter().copied().collect();
+        let message = format!(
+            "machines whose names differ in case or separators alone are taken as several: {}; are they one?",
+            names.join(", ")
+        );
+        remarks.add(Code::UnknownMachine, names.len() as u64, message);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(machine: &str, k: i64) -> Run {
+        let started_us = (20_000 + k) * 86_400_000_000;
+        Run { id: k.to_string(), machine: machine.into(), log: format!("/{machine}/{k}.csv"), started_us }
+    }
+
+    #[test]
+    fn other_options_are_said_and_a_fit_beside_is_none() {
+        let runs: Vec<Run> = (0..5).map(|k| run("M", k)).collect();
+        let said = |ids: [&str; 5]| {
+            let ids = ids.iter().enumerate().map(|(k, id)| (k.to_string(), (*id).to_owned())).collect();
+            let mut remarks = Remarks::default();
+            analyses(&runs, &ids, &mut remarks);
+            remarks.as_slice().iter().map(|one| (one.count, one.message.contains("as 1.csv"))).next()
+        };
+        assert_eq!(said(["a", "a", "a", "a", "a"]), None);
+        assert_eq!(said(["a", "a-fit", "a", "a-fit", "a"]), None);
+        assert_eq!(said(["a", "b", "a", "b", "a"]), Some((2, true)));
+    }
+
+    #[test]
+    fn two_spellings_of_a_machine_are_asked_about() {
+        let mut remarks = Remarks::default();
+        spelled(&["Kran-8", "kran-8", "Kran 9", "Kran-10"].map(|name| run(name, 1)), &mut remarks);
+        assert_eq!(remarks.as_slice().len(), 1);
+        assert!(remarks.as_slice()[0].message.contains("Kran-8, kran-8;"), "{remarks:?}");
+    }
+}
