@@ -91,7 +91,11 @@ impl<'a> Joint<'a> {
         let answer = |(run, trial): (usize, &Trial)| Answer::of(run, trial, track.name(), from_s, &planned);
         let mut answers: Vec<Answer> = runs.iter().enumerate().filter_map(answer).collect();
         let stop = Stop::of(&planned, &answers);
-        stop.iter().for_each(|stop| answers.iter_mut().for_each(|run| stop.unlearnt(run, &planned)));
+        if let Some(stop) = &stop {
+            for run in &mut answers {
+                stop.unlearnt(run, &planned);
+            }
+        }
         let sent = answers.iter().map(|run| run.correction_rad(&planned)).collect();
         let mut workspace = Workspace::default();
         let astray = answers.last().is_some_and(|run| is_astray(&planned, run, fit, &mut workspace));
@@ -202,7 +206,9 @@ impl<'a> Joint<'a> {
             faded(&mut wanted_rad, &fade);
             (step, wanted_rad)
         };
-        self.stop.iter().for_each(|stop| stop.relieved(&mut wanted_rad, &self.planned));
+        if let Some(stop) = &self.stop {
+            stop.relieved(&mut wanted_rad, &self.planned);
+        }
         let (cut_off_hz, room) = match step {
             Step::Kept { .. } => (KEPT_HZ, room(self.name).and_then(Room::of_sent)),
             _ => (finished_hz(&manner), room(self.name)),

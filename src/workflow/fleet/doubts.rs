@@ -63,7 +63,9 @@ pub(super) fn analyses(runs: &[Run], analyses: &BTreeMap<String, String>, remark
     let Some(first) = others.next() else {
         // As many of each.
         let second = groups.values().nth(1).and_then(|own| own.first());
-        second.into_iter().for_each(|run| otherwise(run, most, remarks));
+        if let Some(run) = second {
+            otherwise(run, most, remarks);
+        }
         return;
     };
     otherwise(first, 1 + others.count(), remarks);

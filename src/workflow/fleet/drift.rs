@@ -85,7 +85,9 @@ pub(super) fn matrix(
         let middle = median(levels.clone());
         for ((row, scatter), level) in rows.iter_mut().zip(&mut scatters).zip(levels) {
             let share = if level > 0.0 { middle / level } else { 1.0 };
-            row.iter_mut().for_each(|value| *value *= share);
+            for value in row.iter_mut() {
+                *value *= share;
+            }
             *scatter = scatter.map(|scatter| scatter * share);
         }
     }
@@ -154,7 +156,9 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
 /// Runs that make a trend sure among so many, each of which is tested as a step, too: in order by chance are two of all orders.
 fn fewest_runs(trends: usize) -> usize {
     let by_chance = |runs: usize| 2.0 / (1..=runs).map(|k| k as f64).product::<f64>();
-    (FEWEST_RUNS..).find(|runs| by_chance(*runs) * 2.0 * (trends as f64) < MOST_FALSE).unwrap_or(FEWEST_RUNS)
+    (FEWEST_RUNS..100)
+        .find(|runs| by_chance(*runs) * 2.0 * (trends as f64) < MOST_FALSE)
+        .unwrap_or(FEWEST_RUNS)
 }
 
 /// The trend without its names; `None` for too few runs.
@@ -235,7 +239,7 @@ mod tests {
         let (runs, mut values) = values(0.0);
         for (event, of_runs) in &mut values {
             for (run, value) in of_runs {
-                let noise = 0.01 * ((*run * 7 + event.index as usize * 3) % 5) as f64;
+                let noise = 0.01 * ((*run * 7 + usize::try_from(event.index).unwrap() * 3) % 5) as f64;
                 *value = (1.0 + event.index as f64) * (1.0 + 0.1 * *run as f64 + noise);
             }
         }

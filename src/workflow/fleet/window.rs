@@ -11,6 +11,7 @@ const FEWEST_BETWEEN: usize = 3;
 /// The instants between which runs tell of what was done at one, from what was noted before it, where the
 /// caller names no day, to what was noted after it. What is nearer than three runs of the machine is told together with it.
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_field_names, reason = "all are instants")]
 pub(super) struct Window {
     from_us: i64,
     at_us: i64,

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::history::{History, PastRun};
 use crate::{
     fit::{Fit, JointFit, predict},
+    remark::{Code, Remarks},
     series::{Series, Track},
     units::DEGREE_RAD,
 };
@@ -227,6 +228,33 @@ impl History {
         };
         let all = self.series.get(run)?.1.tracks.iter().filter_map(joint);
         Some(all.max_by(|a, b| a.0.total_cmp(&b.0))?.1)
+    }
+
+    /// What is to be said of a machine that changed, and of one that goes on to.
+    pub(super) fn remark_changes(
+        &self,
+        changed: Option<String>,
+        goes_on: Option<String>,
+        remarks: &mut Remarks,
+    ) {
+        let again = changed.is_some() && self.changes > 1;
+        let mut say =
+            |count: usize, message: String| remarks.add(Code::MachineChanged, count as u64, message);
+        if let Some(message) = changed {
+            say(1, message);
+        }
+        if again {
+            let message = format!(
+                "the machine changed {} times between these runs, by up to {} of mean peak error: it may again, so half of \
+                 the usual step is taken, and more error is expected",
+                self.changes,
+                self.kind.says(self.unsteady_rad)
+            );
+            say(self.changes, message);
+        }
+        if let Some(message) = goes_on {
+            say(1, message);
+        }
     }
 
     fn said_of_return(&self, run: usize, passed: &BTreeSet<usize>) -> String {

@@ -116,21 +116,7 @@ pub fn run(
     let (logs, own) = chosen(&mut (0..observed.len()).filter(|k| !others.contains(k)));
     let (fit, fitted_to, mut remarks) = machine(inputs, &logs, &own)?;
     remarks.extend(doubts);
-    if let Some(message) = &changed {
-        remarks.add(Code::MachineChanged, 1, message);
-        if history.changes > 1 {
-            let message = format!(
-                "the machine changed {} times between these runs, by up to {} of mean peak error: it may again, so half of \
-                 the usual step is taken, and more error is expected",
-                history.changes,
-                history.kind.says(history.unsteady_rad)
-            );
-            remarks.add(Code::MachineChanged, history.changes as u64, message);
-        }
-    }
-    if let Some(message) = goes_on {
-        remarks.add(Code::MachineChanged, 1, message);
-    }
+    history.remark_changes(changed, goes_on, &mut remarks);
     // The fit is to what was sent, but the next command is to follow the plan.
     let doubts = observed.iter().flat_map(|run| run.remarks.as_slice());
     let sent = doubts.filter(|remark| remark.code == Code::PlanIsCommand);

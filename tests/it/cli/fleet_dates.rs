@@ -5,7 +5,8 @@ use std::fs;
 use serde_json::Value;
 
 use crate::support::{
-    fleet::{cells, files},
+    clean,
+    fleet::{cells, files, small_log},
     hold_to_schema, json, run_line, said,
 };
 
@@ -118,4 +119,45 @@ fn a_level_that_changes_at_once_is_told_and_breaks_a_limit() {
     let gate = run_line(folder.path(), "fleet gate data --max-drift-delay-ms 10");
     let (code, out, _) = said(&gate);
     assert!(code == 4 && out.contains("from 2026-03-08 to 2026-03-09"), "{code}: {out}");
+}
+
+/// Nine days, of which the fourth brought oil and the seventh a valve.
+#[test]
+fn a_repair_is_told_by_the_runs_between_what_was_done_before_and_after_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let logs = folder.path().join("logs/M07");
+    fs::create_dir_all(&logs).unwrap();
+    for day in 0..9 {
+        let late_s = if day < 3 { 0.4 } else { 0.2 };
+        fs::write(logs.join(format!("{day}.mcap")), small_log("M07", day, 50 + day as u64, [late_s, late_s]))
+            .unwrap();
+    }
+    json(folder.path(), "fleet scan logs --into data");
+    for (day, what) in [(4, "oil"), (7, "valve")] {
+        clean(folder.path(), &format!("fleet note data --machine M07 --at 2026-03-0{day} {what}"));
+    }
+    let effect = json(folder.path(), "fleet effect data --machine M07");
+    assert_eq!(
+        (&effect["what"], &effect["runs_before"], &effect["runs_after"]),
+        (&"valve".into(), &3.into(), &3.into())
+    );
+    assert_eq!(effect["between"][0]["what"], "oil");
+    let (_, out, _) = said(&run_line(folder.path(), "fleet effect data --machine M07"));
+    assert!(out.contains("Runs before 2026-03-04 (oil) are left out; `--since DATE` takes them."), "{out}");
+    let whole = json(folder.path(), "fleet effect data --machine M07 --since 2026-03-01");
+    assert_eq!((&whole["runs_before"], whole["between"].as_array().map(Vec::len)), (&6.into(), Some(0)));
+    // A day later there are two runs between: the effect is that of both.
+    clean(folder.path(), "fleet note data --machine M07 --at 2026-03-09 seal");
+    let both = json(folder.path(), "fleet effect data --machine M07 --at 2026-03-07");
+    assert_eq!(both["together"][0]["what"], "seal", "{both}");
+    clean(folder.path(), "fleet note data --machine M07 --at 2026-03-09 seal --remove");
+    assert_eq!(json(folder.path(), "fleet note data")["interventions"].as_array().unwrap().len(), 2);
+    for (line, expected) in [
+        ("fleet note data --machine M07 --at 2026-03-09 seal --remove", "nothing is noted of M07"),
+        ("fleet note data --machine M07 --at 2036-03-09 seal", "2036"),
+        ("fleet note data --machine M07 --at 2026-03-09 --joint bom seal", "bom"),
+    ] {
+        let (code, _, err) = said(&run_line(folder.path(), line));
+        assert!(code == 1 && err.contains(expected), "{line}: {code} {err}");
+    }
 }

@@ -139,7 +139,8 @@ fn learn(machines: &[Machine]) -> (Vec<f64>, Sent, Vec<Value>) {
     for (k, machine) in machines.iter().enumerate() {
         errors.push(drive(folder.path(), k + 1, machine, &sent));
         let (next, document) = next(folder.path(), k + 1);
-        (sent, _) = (next, said.push(document));
+        sent = next;
+        said.push(document);
     }
     (errors, sent, said)
 }
