@@ -9,6 +9,8 @@ use crate::{
 const CHANGES: usize = 30;
 /// Rows that a value is held for in the median, at least: fewer are a log in which a row was lost.
 const HELD_ROWS: f64 = 1.5;
+/// Rows that are looked at first.
+const HEAD: usize = 4000;
 /// Share of the values that come near their tick, and how near, in rows and in periods; and share that come with the next tick while
 /// the plan moves: values that are rounded come as it pays.
 const MOST: f64 = 0.8;
@@ -31,7 +33,14 @@ const LOST_STEP: f64 = 1.5;
 /// come.
 pub(super) fn sampled(track: &Track) -> Option<Track> {
     let (t_s, q) = (track.t_s(), track.position());
-    let changes: Vec<usize> = (1..q.len()).filter(|&i| (q[i] - q[i - 1]).abs() > 0.0).collect();
+    let changed = |rows: usize| (1..rows).filter(|&i| (q[i] - q[i - 1]).abs() > 0.0);
+    // Most plans tell by their first rows that each is another.
+    let head = HEAD.min(q.len());
+    let first = changed(head).count();
+    if first >= CHANGES && HELD_ROWS * first as f64 > head as f64 {
+        return None;
+    }
+    let changes: Vec<usize> = changed(q.len()).collect();
     if changes.len() < CHANGES || HELD_ROWS * changes.len() as f64 > q.len() as f64 {
         return None;
     }
