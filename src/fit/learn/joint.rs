@@ -206,11 +206,11 @@ impl<'a> Joint<'a> {
             faded(&mut wanted_rad, &fade);
             (step, wanted_rad)
         };
-        if let Some(stop) = &self.stop {
-            stop.relieved(&mut wanted_rad, &self.planned);
-        }
+        let relieved_rad = self.stop.map_or(0.0, |stop| stop.relieved(&mut wanted_rad, &self.planned));
         let (cut_off_hz, room) = match step {
-            Step::Kept { .. } => (KEPT_HZ, room(self.name).and_then(Room::of_sent)),
+            Step::Kept { .. } if relieved_rad < TOLD_RAD => {
+                (KEPT_HZ, room(self.name).and_then(Room::of_sent))
+            }
             _ => (finished_hz(&manner), room(self.name)),
         };
         // Runs in which the joint was not measured count, too.

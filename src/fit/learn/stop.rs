@@ -48,13 +48,17 @@ impl Stop {
         run.fill(planned);
     }
 
-    /// Takes away what a correction pushes against it.
-    pub(super) fn relieved(&self, correction_rad: &mut [f64], planned: &[(f64, f64)]) {
+    /// Takes away what a correction pushes against it; the largest part of that, rad.
+    pub(super) fn relieved(&self, correction_rad: &mut [f64], planned: &[(f64, f64)]) -> f64 {
+        let mut most_rad = 0.0_f64;
         for (correction, planned) in correction_rad.iter_mut().zip(planned) {
             if self.is_before(planned.0) {
-                *correction = self.side * (self.side * *correction).min(0.0);
+                let relieved = self.side * (self.side * *correction).min(0.0);
+                most_rad = most_rad.max((*correction - relieved).abs());
+                *correction = relieved;
             }
         }
+        most_rad
     }
 }
 

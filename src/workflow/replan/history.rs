@@ -195,7 +195,8 @@ impl History {
     /// should have, in the ratio of the two, and no less than a half.
     pub(super) fn trust(&self) -> f64 {
         let of = |run: &PastRun| Some(run.promised?.mean_peak_margin_rad / run.mean_peak_rad?);
-        let first = self.runs.len() == 1 && (self.changes > 0 || self.drifts);
+        // Of a machine that goes on changing what is left is no want of trust.
+        let first = self.follows || self.runs.len() == 1 && (self.changes > 0 || self.drifts);
         let ratio = self.runs.last().filter(|run| run.corrected && !first).and_then(of).unwrap_or(1.0);
         let most = if self.changes >= OFTEN { LEAST_TRUST } else { 1.0 };
         if ratio.is_finite() { ratio.clamp(LEAST_TRUST, most) } else { most }

@@ -159,6 +159,8 @@ fn a_joint_that_is_stopped_before_its_plan_ends_is_named_and_pushed_no_further()
         said[1]["remarks"]
     );
     assert!(!remarks(&said[0], "no farther") && !said.iter().any(|said| remarks(said, "stick comes to")));
+    let ratio = sharpest(&sent) / sharpest(&planned());
+    assert!(ratio < 2.0, "{ratio} times the acceleration");
     let most_deg = sent[0].iter().copied().fold(f64::NEG_INFINITY, f64::max);
     assert!(most_deg < 45.1, "a plan to 45 deg is sent to {most_deg} deg");
     assert!(errors[2] < 0.5 * errors[0] && errors[3] < 1.05 * errors[2], "{errors:?}");
