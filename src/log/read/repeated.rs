@@ -1,6 +1,6 @@
 //! Values that are slower than their log, of a sensor or of a planner: each is written again until the next one comes.
 
-use super::sender::{sampled, smooth};
+use super::sender::sampled;
 use crate::{
     remark::{Code, Remarks},
     series::{Series, Track, rounding, split_at_gaps},
@@ -67,14 +67,7 @@ fn of_side(
 /// The samples of a motion that was sent slower than it was logged: set values that step from one to the next are held longer, and
 /// those that are rounded change when the plan passes from one to the next. Between them it goes on smoothly.
 fn sent(track: &Track, longest_s: f64) -> Option<Track> {
-    let even = || {
-        let fresh = fresh(track)?;
-        match track.velocity() {
-            Some(_) => Some(fresh),
-            None => smooth(track, fresh.t_s().to_vec(), fresh.position().to_vec()),
-        }
-    };
-    let found = sampled(track).or_else(even)?;
+    let found = sampled(track)?;
     (found.sample_interval_s() <= longest_s && rounding(track).is_none()).then_some(found)
 }
 

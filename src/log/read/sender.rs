@@ -11,6 +11,8 @@ const CHANGES: usize = 30;
 const HELD_ROWS: f64 = 1.5;
 /// Rows that are looked at first.
 const HEAD: usize = 4000;
+/// One of so many values may turn back.
+const TURNS: usize = 5;
 /// Share of the values that come near their tick, and how near, in rows and in periods; and share that come with the next tick while
 /// the plan moves: values that are rounded come as it pays.
 const MOST: f64 = 0.8;
@@ -29,8 +31,8 @@ const AROUND: usize = 5;
 const LOST_TICKS: f64 = 3.0;
 const LOST_STEP: f64 = 1.5;
 
-/// The values of a track that is held, each at its tick where the sender's clock is even; `None` where no clock explains when values
-/// come.
+/// The values of a track that is held, each at its tick where the sender's clock is even, and where it came elsewhere; `None` of one
+/// that is not held.
 pub(super) fn sampled(track: &Track) -> Option<Track> {
     let (t_s, q) = (track.t_s(), track.position());
     let changed = |rows: usize| (1..rows).filter(|&i| (q[i] - q[i - 1]).abs() > 0.0);
@@ -45,32 +47,59 @@ pub(super) fn sampled(track: &Track) -> Option<Track> {
         return None;
     }
     let came_s: Vec<f64> = changes.iter().map(|&i| t_s[i]).collect();
-    let clock = Clock::of(&came_s, track.sample_interval_s())?;
     let value: Vec<f64> = changes.iter().map(|&i| q[i]).collect();
-    let sent_s = [clock.sent_s(&came_s), came_s];
-    // A sender that computes a value when it sends it is late with both.
-    let sent_s = sent_s.into_iter().min_by(|a, b| bend(a, &value).total_cmp(&bend(b, &value)))?;
-    let (mut kept_s, mut kept) = (vec![t_s[0]], vec![q[0]]);
-    for (k, (at_s, now)) in sent_s.iter().zip(&value).enumerate() {
-        let held = *kept.last()?;
-        let ticks = if k == 0 { f64::INFINITY } else { clock.ticks[k] - clock.ticks[k - 1] };
-        let before = if k < 2 { 0.0 } else { (held - value[k - 2]).abs() };
-        let lost = ticks <= LOST_TICKS && before > 0.0 && (now - held).abs() > LOST_STEP * before;
-        if !lost {
-            hold(&mut kept_s, &mut kept, at_s - 0.5 * clock.period_s, clock.period_s);
+    let (usual_s, row_s) = (median(steps_s(&came_s)), track.sample_interval_s());
+    // Values that come and go are no plan of a motion.
+    if usual_s < HELD_ROWS * row_s || TURNS * turns(&value) > value.len() {
+        return None;
+    }
+    let (t_s, q) = match Clock::of(&came_s, row_s) {
+        Some(clock) => {
+            // A sender that computes a value when it sends it is late with both.
+            let sent_s = [clock.sent_s(&came_s), came_s];
+            let sent_s = sent_s.into_iter().min_by(|a, b| bend(a, &value).total_cmp(&bend(b, &value)))?;
+            let is_lost = |k: usize| clock.is_lost(k, &value);
+            samples(track, (&sent_s, &value), (clock.period_s, 0.5 * clock.period_s), is_lost)?
         }
-        if *at_s > *kept_s.last()? {
-            kept_s.push(*at_s);
-            kept.push(*now);
+        // Sent where the plan moved, or whenever there was time: after a silence it moved before the value came.
+        None => samples(track, (&came_s, &value), (usual_s, REST_TICKS * usual_s), |_| false)?,
+    };
+    smooth(track, t_s, q)
+}
+
+fn steps_s(came_s: &[f64]) -> Vec<f64> {
+    came_s.windows(2).map(|two| two[1] - two[0]).collect()
+}
+
+/// How often values turn back.
+fn turns(value: &[f64]) -> usize {
+    value.windows(3).filter(|three| (three[2] - three[1]) * (three[1] - three[0]) < 0.0).count()
+}
+
+/// Values at instants, with those of rests between: each holds until so long before the next, but where one was lost.
+fn samples(
+    track: &Track,
+    (sent_s, value): (&[f64], &[f64]),
+    (period_s, before_s): (f64, f64),
+    is_lost: impl Fn(usize) -> bool,
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let (mut t_s, mut q) = (vec![*track.t_s().first()?], vec![*track.position().first()?]);
+    for (k, (at_s, now)) in sent_s.iter().zip(value).enumerate() {
+        if !is_lost(k) {
+            hold(&mut t_s, &mut q, at_s - before_s, period_s);
+        }
+        if *at_s > *t_s.last()? {
+            t_s.push(*at_s);
+            q.push(*now);
         }
     }
-    let end_s = *t_s.last()?;
-    hold(&mut kept_s, &mut kept, end_s - 0.5 * clock.period_s, clock.period_s);
-    if end_s > *kept_s.last()? {
-        kept_s.push(end_s);
-        kept.push(*kept.last()?);
+    let end_s = *track.t_s().last()?;
+    hold(&mut t_s, &mut q, end_s - 0.5 * period_s, period_s);
+    if end_s > *t_s.last()? {
+        t_s.push(end_s);
+        q.push(*q.last()?);
     }
-    smooth(track, kept_s, kept)
+    Some((t_s, q))
 }
 
 /// Repeats the last value every period up to an instant.
@@ -82,7 +111,7 @@ fn hold(t_s: &mut Vec<f64>, q: &mut Vec<f64>, until_s: f64, period_s: f64) {
 }
 
 /// Samples as a track with the slopes of a curve through them that is nowhere beyond its neighbours (Fritsch and Carlson 1980).
-pub(super) fn smooth(track: &Track, t_s: Vec<f64>, q: Vec<f64>) -> Option<Track> {
+fn smooth(track: &Track, t_s: Vec<f64>, q: Vec<f64>) -> Option<Track> {
     let slope = |k: usize| (q[k + 1] - q[k]) / (t_s[k + 1] - t_s[k]);
     let through = |k: usize| {
         let (before, after) = (slope(k - 1), slope(k));
@@ -115,13 +144,10 @@ struct Clock {
 
 impl Clock {
     fn of(came_s: &[f64], row_s: f64) -> Option<Self> {
-        let steps_s: Vec<f64> = came_s.windows(2).map(|two| two[1] - two[0]).collect();
+        let steps_s = steps_s(came_s);
         let middle_s = median(steps_s.clone());
         let usual = || steps_s.iter().filter(|step_s| USUAL.contains(&(*step_s / middle_s)));
         let mut period_s = usual().sum::<f64>() / usual().count().max(1) as f64;
-        if period_s < HELD_ROWS * row_s {
-            return None;
-        }
         let mut ticks = counted(came_s, period_s);
         for _ in 0..2 {
             let moving = || (0..steps_s.len()).filter(|k| ticks[k + 1] - ticks[*k] <= REST_TICKS);
@@ -136,6 +162,13 @@ impl Clock {
         let near = clock.sent_s(came_s).iter().zip(came_s).filter(|(a, b)| (*a - *b).abs() <= near_s).count();
         let even = near as f64 >= MOST * came_s.len() as f64;
         (even && next as f64 >= NEXT * steps().count() as f64).then_some(clock)
+    }
+
+    /// Whether the value before one, in motion, did not come: the step to it is as large as two.
+    fn is_lost(&self, k: usize, value: &[f64]) -> bool {
+        let Some(before) = k.checked_sub(2) else { return false };
+        let [from, to] = [value[k - 1] - value[before], value[k] - value[k - 1]].map(f64::abs);
+        self.ticks[k] - self.ticks[k - 1] <= LOST_TICKS && from > 0.0 && to > LOST_STEP * from
     }
 
     /// When each value was sent, by all between two rests.
@@ -236,6 +269,37 @@ mod tests {
         let made_late = |t_s: f64, share: f64| (t_s + 0.05 * share, plan(t_s + 0.05 * share));
         let (more, off) = read(made_late, 0.2).unwrap();
         assert!(more < 4.0 && off < 0.02, "{more} times, {off} rad");
+    }
+
+    /// Sent where the plan has moved, or whenever there was time.
+    #[test]
+    fn what_comes_without_a_clock_is_as_smooth_too() {
+        let rows: Vec<f64> = (0..1600).map(|k| f64::from(k) * 0.01).collect();
+        let mut next_s = 0.0;
+        let mut often = |t_s: f64, held: f64| {
+            if t_s < next_s {
+                return held;
+            }
+            // Steps of 10 to 130 ms in an order without a period.
+            next_s = t_s + 0.01 + 0.12 * (t_s * 1234.5).sin().abs();
+            plan(t_s)
+        };
+        let by_change = |t_s: f64, held: f64| if (plan(t_s) - held).abs() > 0.02 { plan(t_s) } else { held };
+        let smooth = |of: &mut dyn FnMut(f64, f64) -> f64| {
+            let mut held = 0.0;
+            let sent = rows.iter().map(|t_s| {
+                held = of(*t_s, held);
+                held
+            });
+            let track = Track::new("J", rows.clone(), sent.collect(), &[]).unwrap();
+            let found = sampled(&track).unwrap();
+            let steps =
+                rows.windows(2).map(|two| found.held_at(two[1]).position - found.held_at(two[0]).position);
+            let steps: Vec<f64> = steps.collect();
+            steps.windows(2).map(|two| (two[1] - two[0]).abs() / 1e-4).fold(0.0, f64::max)
+        };
+        let found = [smooth(&mut { by_change }), smooth(&mut often)];
+        assert!(found.iter().all(|sharpest| *sharpest < 2.0), "{found:?} rad/s2 of 0.25");
     }
 
     #[test]
