@@ -26,7 +26,7 @@ impl Window {
         notes: impl Iterator<Item = &'a Note> + Clone,
     ) -> Self {
         let apart = |from_us: i64, to_us: i64| {
-            let between = runs_us.iter().filter(|us| (from_us..to_us).contains(us));
+            let between = runs_us.iter().filter(|&&us| from_us <= us && us < to_us);
             (from_us < to_us && between.count() >= FEWEST_BETWEEN).then_some(())
         };
         let before = notes.clone().filter(|note| since_us.is_none() && apart(note.at_us, at_us).is_some());
