@@ -1,12 +1,13 @@
-//! A serial chain of turning joints, in the form that its mechanics need.
+//! A serial chain of joints that turn or slide, in the form that its mechanics need.
 
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Rotation3, Translation3, Unit, Vector3};
 
 use super::{Inertia, Pose, robot::Robot};
+use crate::series::JointKind;
 
-/// What a joint may do.
+/// What a joint may do; of one that slides read m for rad and N for N m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointLimit {
     /// Smallest angle, rad; minus infinity for a continuous joint.
@@ -19,24 +20,25 @@ pub struct JointLimit {
     pub speed_rad_s: f64,
 }
 
-/// One turning joint.
+/// One joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     /// Name, distinct within the chain.
     pub name: String,
+    /// Whether it turns or slides.
+    pub kind: JointKind,
     /// What it may do.
     pub limit: JointLimit,
 }
 
-/// From one joint to the next: the next frame at angle zero, seen from this one.
+/// From one joint to the next: the next frame at position zero, seen from this one.
 ///
 /// Every joint frame has its z axis along the joint's axis, whatever the file's axis is.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
     pub(super) rotation: Matrix3<f64>,
     pub(super) offset_m: Vector3<f64>,
-    /// Whether the joint slides along its axis instead of turning about it; only those of
-    /// [`Kinematics`](super::Kinematics) may.
+    /// Whether the joint slides along its axis instead of turning about it.
     pub(super) slides: bool,
 }
 
@@ -44,7 +46,7 @@ pub(super) struct Step {
 #[derive(Debug, Clone)]
 pub(super) struct Link {
     pub(super) name: String,
-    /// The joint it turns with, counted from one; zero is the base.
+    /// The joint it moves with, counted from one; zero is the base.
     pub(super) frame: usize,
     /// Its frame, seen from that joint's frame.
     pub(super) place: Pose,
@@ -55,7 +57,7 @@ pub(super) struct Link {
 pub struct Chain {
     pub(super) joints: Vec<Joint>,
     pub(super) steps: Vec<Step>,
-    /// What turns with each joint, in that joint's frame.
+    /// What moves with each joint, in that joint's frame.
     pub(super) bodies: Vec<Inertia>,
     pub(super) links: Vec<Link>,
     /// The tool's frame, seen from the last joint's frame.
@@ -76,7 +78,7 @@ impl Chain {
         self.joints.len()
     }
 
-    /// Joints that turn nothing that weighs: the file gives no link beyond them a mass.
+    /// Joints that move nothing that weighs: the file gives no link beyond them a mass.
     pub fn weightless(&self) -> Vec<&str> {
         let loaded = self.bodies.iter().rposition(|body| body.mass_kg() > 0.0).map_or(0, |last| last + 1);
         self.joints.iter().skip(loaded).map(|joint| joint.name.as_str()).collect()
@@ -92,8 +94,8 @@ impl Chain {
         self.links.iter().map(|link| link.name.as_str())
     }
 
-    /// Whether each of these links turns against the one before it; the base does not.
-    pub fn link_turns(&self) -> impl Iterator<Item = bool> {
+    /// Whether each of these links moves against the one before it; the base does not.
+    pub fn link_moves(&self) -> impl Iterator<Item = bool> {
         let before = std::iter::once(0).chain(self.links.iter().map(|link| link.frame));
         self.links.iter().zip(before).map(|(link, before)| link.frame > before)
     }
@@ -139,16 +141,11 @@ impl Builder {
     }
 
     /// Goes on by a joint that turns, or slides.
-    pub(super) fn moving(
-        &mut self,
-        (joint, slides): (Joint, bool),
-        origin: &Pose,
-        axis: &Unit<Vector3<f64>>,
-        link: &str,
-    ) {
+    pub(super) fn moving(&mut self, joint: Joint, origin: &Pose, axis: &Unit<Vector3<f64>>, link: &str) {
         let align = onto_axis(axis);
         let place = self.here * origin * align;
         let (rotation, offset_m) = (*place.rotation.matrix(), place.translation.vector);
+        let slides = joint.kind == JointKind::Slides;
         self.chain.steps.push(Step { rotation, offset_m, slides });
         self.chain.joints.push(joint);
         self.chain.bodies.push(Inertia::default());

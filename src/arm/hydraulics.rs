@@ -4,7 +4,8 @@ use std::{collections::BTreeMap, f64::consts::PI};
 
 use serde::Deserialize;
 
-use super::{ArmError, Chain, Cylinder, Linkage, error::Witness};
+use super::{ArmError, Chain, Cylinder, Linkage, cylinder::Drive, error::Witness};
+use crate::series::JointKind;
 
 /// More than any file of cylinders.
 const LARGEST_TEXT: usize = 1 << 20;
@@ -30,7 +31,8 @@ pub(super) struct Document {
     pub(super) joint: BTreeMap<String, Entry>,
 }
 
-/// Cylinders of one joint.
+/// Cylinders of one joint: of one that turns with a triangle (`a_m`, `b_m`, `delta_rad`, `angle_sign`), of one that slides with
+/// `rod_per_travel`.
 #[derive(Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -40,13 +42,16 @@ pub(super) struct Entry {
     /// Diameter of the rod, m.
     rod_m: f64,
     /// From the joint to the mount on the link before it, m.
-    a_m: f64,
+    a_m: Option<f64>,
     /// From the joint to the mount on the link after it, m.
-    b_m: f64,
+    b_m: Option<f64>,
     /// Angle between the mounts, seen from the joint, at joint angle zero, rad.
-    delta_rad: f64,
+    delta_rad: Option<f64>,
     /// 1 where the angle between the mounts grows with the joint's angle, -1 where it shrinks.
-    angle_sign: i8,
+    angle_sign: Option<i8>,
+    /// Travel of the rod by that of a joint that slides: 1 where it moves it directly, 0.5 where chains double it, negative
+    /// where it retracts as the joint's position grows.
+    rod_per_travel: Option<f64>,
     /// How many like cylinders work side by side.
     #[serde(default = "one")]
     cylinders: u32,
@@ -58,6 +63,38 @@ pub(super) struct Entry {
 
 fn one() -> u32 {
     1
+}
+
+impl Entry {
+    /// How it moves a joint, of that kind if it is known; else what was found and what is expected.
+    fn drive(&self, kind: Option<JointKind>) -> Result<Drive, (String, &'static str)> {
+        let triangle =
+            [self.a_m.is_some(), self.b_m.is_some(), self.delta_rad.is_some(), self.angle_sign.is_some()];
+        let any = triangle.contains(&true);
+        match (self.rod_per_travel, self.a_m, self.b_m, self.delta_rad, self.angle_sign) {
+            (Some(travel), ..) if !any && kind != Some(JointKind::Turns) => Ok(Drive::Slides(travel)),
+            (None, Some(inner_m), Some(outer_m), Some(offset_rad), Some(sign))
+                if kind != Some(JointKind::Slides) =>
+            {
+                Ok(Drive::Turns(Linkage { inner_m, outer_m, offset_rad, sense: f64::from(sign) }))
+            }
+            (straight, ..) => {
+                let keys = ["a_m", "b_m", "delta_rad", "angle_sign"].into_iter().zip(triangle);
+                let given = keys.filter(|(_, given)| *given).map(|(key, _)| key);
+                let given: Vec<&str> = given.chain(straight.map(|_| "rod_per_travel")).collect();
+                let found =
+                    if given.is_empty() { "no key of its drive".to_owned() } else { given.join(", ") };
+                let expected = match kind {
+                    Some(JointKind::Turns) => "a_m, b_m, delta_rad and angle_sign, for the joint turns",
+                    Some(JointKind::Slides) => "rod_per_travel alone, for the joint slides",
+                    None => {
+                        "a_m, b_m, delta_rad and angle_sign of a joint that turns, or rod_per_travel of one that slides"
+                    }
+                };
+                Err((found, expected))
+            }
+        }
+    }
 }
 
 impl Document {
@@ -85,30 +122,31 @@ impl Document {
         Ok(document)
     }
 
-    /// The cylinder of a joint that has such a range, rad; without one, its triangle is taken to reach it.
+    /// The cylinder of a joint that has such a range, rad; without one, its triangle is taken to reach it. `kind`: how the
+    /// joint moves, if that is known.
     pub(super) fn cylinder(
         &self,
         joint: &str,
         entry: &Entry,
-        range_rad: Option<(f64, f64)>,
+        (kind, range_rad): (Option<JointKind>, Option<(f64, f64)>),
         at: &Witness<'_>,
     ) -> Result<Cylinder, ArmError> {
-        let linkage = Linkage {
-            inner_m: entry.a_m,
-            outer_m: entry.b_m,
-            offset_rad: entry.delta_rad,
-            sense: f64::from(entry.angle_sign),
-        };
+        let drive = entry
+            .drive(kind)
+            .map_err(|(found, expected)| at.unexpected(format!("[joint.{joint}]"), found, expected))?;
         let size = (entry.bore_m, entry.rod_m, entry.cylinders);
         let pressures = (self.supply_pressure_pa, self.return_pressure_pa, self.mechanical_efficiency);
-        let middle_rad = linkage.sense * (0.5 * PI - linkage.offset_rad);
+        let middle_rad = match drive {
+            Drive::Turns(linkage) => linkage.sense * (0.5 * PI - linkage.offset_rad),
+            Drive::Slides(_) => 0.0,
+        };
         let range_rad = range_rad.unwrap_or((middle_rad, middle_rad));
         let unexpected =
             |key, found, expected| at.unexpected(format!("[joint.{joint}] {key}"), found, expected);
         if !(-1e3..1e3).contains(&entry.sensor_zero_m) {
             return Err(unexpected("sensor_zero_m", entry.sensor_zero_m.to_string(), "a length, m"));
         }
-        Cylinder::new(linkage, size, pressures, range_rad)
+        Cylinder::new(drive, size, pressures, range_rad)
             .map_err(|(key, found, expected)| unexpected(key, found, expected))
     }
 }
@@ -144,7 +182,8 @@ impl Hydraulics {
                 continue;
             };
             let range_rad = (joint.limit.lower_rad, joint.limit.upper_rad);
-            cylinders.push(Some(document.cylinder(&joint.name, &entry, Some(range_rad), &at)?));
+            let known = (Some(joint.kind), Some(range_rad));
+            cylinders.push(Some(document.cylinder(&joint.name, &entry, known, &at)?));
         }
         if let Some(name) = entries.keys().next() {
             let names: Vec<&str> = chain.joints().iter().map(|joint| joint.name.as_str()).collect();

@@ -17,7 +17,7 @@ use crate::math::sin_cos;
 /// The number of instants that suits the widest vector units.
 pub const LANES: usize = 8;
 
-/// Motion of the joints, by joint and then by instant; the slices have an entry a joint.
+/// Motion of the joints, by joint and then by instant; the slices have an entry a joint. Of one that slides read m for rad.
 #[derive(Debug, Clone, Copy)]
 pub struct Motion<'a, const L: usize> {
     /// Angles, rad.
@@ -36,6 +36,8 @@ type Vectors<const L: usize> = [[f64; L]; 3];
 struct Body<const L: usize> {
     sin: [f64; L],
     cos: [f64; L],
+    /// How far a joint that slides has slid, m; of one that turns void.
+    slid: [f64; L],
     speed: Vectors<L>,
     acceleration: Vectors<L>,
     /// Acceleration of the next joint's origin.
@@ -57,6 +59,7 @@ impl<const L: usize> Workspace<L> {
         let body = Body {
             sin: [0.0; L],
             cos: [1.0; L],
+            slid: [0.0; L],
             speed: zero,
             acceleration: zero,
             reach: zero,
@@ -66,14 +69,14 @@ impl<const L: usize> Workspace<L> {
         Self { bodies: vec![body; chain.joint_count()] }
     }
 
-    /// Sines and cosines of the angles last given, by joint.
+    /// Sines and cosines of the angles last given, by joint; 0 and 1 of one that slides.
     pub fn sin_cos(&self) -> impl Iterator<Item = (&[f64; L], &[f64; L])> {
         self.bodies.iter().map(|body| (&body.sin, &body.cos))
     }
 }
 
 impl Chain {
-    /// Torques in N m that move the joints as asked, by joint and instant, against gravity along
+    /// Torques in N m, forces in N of joints that slide, that move the joints as asked, by joint and instant, against gravity along
     /// minus z of the base.
     ///
     /// Takes the widest vector unit of the processor; the result does not depend on which. Joints
@@ -118,23 +121,38 @@ pub fn inverse_dynamics<const L: usize>(
     let (mut speed, mut acceleration) = (zero, zero);
     let mut reach = [[0.0; L], [0.0; L], [GRAVITY_M_S2; L]];
     // None waits for another, so these come first.
-    for (body, position_rad) in work.bodies[..joints].iter_mut().zip(motion.position_rad) {
-        (body.sin, body.cos) = sin_cos(position_rad);
+    let bodies = work.bodies[..joints].iter_mut().zip(&chain.steps);
+    for ((body, step), position) in bodies.zip(motion.position_rad) {
+        if step.slides {
+            body.slid = *position;
+        } else {
+            (body.sin, body.cos) = sin_cos(position);
+        }
     }
     for i in 0..joints {
         let body = &mut work.bodies[i];
         let inertia = if i + 1 == chain.steps.len() { &load.0 } else { &chain.bodies[i] };
         let onwards = chain.steps.get(i + 1).map_or([0.0; 3], |next| next.offset_m.into());
         let rates = (&motion.speed_rad_s[i], &motion.acceleration_rad_s2[i]);
-        outwards(&chain.steps[i], inertia, onwards, rates, (&speed, &acceleration, &reach), body);
+        let (step, before) = (&chain.steps[i], (&speed, &acceleration, &reach));
+        if step.slides {
+            outwards::<L, true>(step, inertia, onwards, rates, before, body);
+        } else {
+            outwards::<L, false>(step, inertia, onwards, rates, before, body);
+        }
         (speed, acceleration, reach) = (body.speed, body.acceleration, body.reach);
     }
     for i in (0..joints).rev() {
-        torque_nm[i] = work.bodies[i].moment[2];
+        let (step, body) = (&chain.steps[i], &work.bodies[i]);
+        torque_nm[i] = if step.slides { body.force[2] } else { body.moment[2] };
         if let (inner, [outer, ..]) = work.bodies.split_at_mut(i)
             && let Some(inner) = inner.last_mut()
         {
-            inwards(&chain.steps[i], outer, inner);
+            if step.slides {
+                inwards::<L, true>(step, outer, inner);
+            } else {
+                inwards::<L, false>(step, outer, inner);
+            }
         }
     }
 }
@@ -142,7 +160,7 @@ pub fn inverse_dynamics<const L: usize>(
 /// Motion of a body from that of the body before it, and what it takes to move it.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "as inverse_dynamics")]
-fn outwards<const L: usize>(
+fn outwards<const L: usize, const SLIDES: bool>(
     step: &Step,
     inertia: &Inertia,
     onwards: [f64; 3],
@@ -161,9 +179,11 @@ fn outwards<const L: usize>(
             let [x, y, z] = times(&columns, at(v, l));
             [cos * x + sin * y, cos * y - sin * x, z]
         };
-        let (w, b, a) = (into(speed), into(acceleration), into(reach));
-        let b = [b[0] + w[1] * rate[l], b[1] - w[0] * rate[l], b[2] + rate_change[l]];
-        let w = [w[0], w[1], w[2] + rate[l]];
+        let (mut w, mut b, mut a) = (into(speed), into(acceleration), into(reach));
+        if !SLIDES {
+            b = [b[0] + w[1] * rate[l], b[1] - w[0] * rate[l], b[2] + rate_change[l]];
+            w = [w[0], w[1], w[2] + rate[l]];
+        }
         let (xx, yy, zz) = (w[0] * w[0], w[1] * w[1], w[2] * w[2]);
         let (xy, xz, yz) = (w[0] * w[1], w[0] * w[2], w[1] * w[2]);
         let u = [
@@ -171,6 +191,15 @@ fn outwards<const L: usize>(
             [xy + b[2], -(xx + zz), yz - b[0]],
             [xz - b[1], yz + b[0], -(xx + yy)],
         ];
+        if SLIDES {
+            // The origin has slid along z, with Coriolis' acceleration.
+            let slid = body.slid[l];
+            a = [
+                a[0] + u[0][2] * slid + 2.0 * w[1] * rate[l],
+                a[1] + u[1][2] * slid - 2.0 * w[0] * rate[l],
+                a[2] + u[2][2] * slid + rate_change[l],
+            ];
+        }
         let uj = [times(&u, second[0]), times(&u, second[1]), times(&u, second[2])];
         let turning = [uj[1][2] - uj[2][1], uj[2][0] - uj[0][2], uj[0][1] - uj[1][0]];
         set(&mut body.speed, l, w);
@@ -184,7 +213,7 @@ fn outwards<const L: usize>(
 /// Hands the load of a body to the body before it.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "as inverse_dynamics")]
-fn inwards<const L: usize>(step: &Step, outer: &Body<L>, inner: &mut Body<L>) {
+fn inwards<const L: usize, const SLIDES: bool>(step: &Step, outer: &Body<L>, inner: &mut Body<L>) {
     let rows: [[f64; 3]; 3] = step.rotation.transpose().into();
     let offset: [f64; 3] = step.offset_m.into();
     for l in 0..L {
@@ -194,7 +223,13 @@ fn inwards<const L: usize>(step: &Step, outer: &Body<L>, inner: &mut Body<L>) {
             times(&rows, [cos * x - sin * y, sin * x + cos * y, z])
         };
         let (force, moment) = (out_of(&outer.force), out_of(&outer.moment));
-        let moment = sum(moment, cross(offset, force));
+        let mut arm = offset;
+        if SLIDES {
+            let slid = outer.slid[l];
+            arm =
+                [offset[0] + rows[0][2] * slid, offset[1] + rows[1][2] * slid, offset[2] + rows[2][2] * slid];
+        }
+        let moment = sum(moment, cross(arm, force));
         let (own_force, own_moment) = (at(&inner.force, l), at(&inner.moment, l));
         set(&mut inner.force, l, sum(own_force, force));
         set(&mut inner.moment, l, sum(own_moment, moment));

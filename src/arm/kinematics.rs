@@ -7,7 +7,7 @@ use super::{Chain, Pose};
 impl Chain {
     /// Pose of every link on the way to the tool, in the base's frame; the base itself comes first.
     ///
-    /// Angles beyond the number of joints are ignored, missing ones are zero.
+    /// Positions, rad or m, beyond the number of joints are ignored, missing ones are zero.
     pub fn link_poses(&self, position_rad: &[f64]) -> Vec<Pose> {
         let frames = self.frames(position_rad);
         self.links.iter().filter_map(|link| Some(frames.get(link.frame)? * link.place)).collect()
@@ -18,7 +18,7 @@ impl Chain {
         self.frames(position_rad).last().map_or(self.tool, |last| last * self.tool)
     }
 
-    /// How the tool follows the joints: for each joint a column of the tool's linear velocity, m/rad,
+    /// How the tool follows the joints: for each joint a column of the tool's linear velocity, m/rad or m/m,
     /// above its angular velocity, both along the base's axes.
     pub fn tool_jacobian(&self, position_rad: &[f64]) -> Matrix6xX<f64> {
         let frames = self.frames(position_rad);
@@ -42,6 +42,11 @@ impl Chain {
         let (mut turn, mut velocity) = (Vector3::zeros(), Vector3::zeros());
         for ((step, &q), &qd) in self.steps.iter().zip(position_rad).zip(speed_rad_s) {
             velocity += turn.cross(&step.offset_m);
+            if step.slides {
+                (velocity, turn) = (step.rotation.tr_mul(&velocity), step.rotation.tr_mul(&turn));
+                velocity += turn.cross(&(Vector3::z() * q)) + Vector3::z() * qd;
+                continue;
+            }
             let back =
                 (step.rotation * Rotation3::from_axis_angle(&Vector3::z_axis(), q).matrix()).transpose();
             velocity = back * velocity;

@@ -1,6 +1,6 @@
 //! Arms: what a URDF and a file of cylinders say, and the mechanics that follow.
 //!
-//! A [`Chain`] holds the geometry and the masses of any serial arm with turning joints: poses
+//! A [`Chain`] holds the geometry and the masses of any serial arm of joints that turn or slide: poses
 //! ([`Chain::tool_pose`]), the tool's speed, inverse dynamics ([`Chain::inverse_dynamics`], in lanes
 //! of several instants) and inverse kinematics ([`Chain::reach`]). [`Hydraulics`] holds the
 //! cylinders, which turn joint motion and torque into rod speed, flow and force. [`Arm`] is both.
@@ -24,7 +24,7 @@ mod shape;
 mod urdf;
 
 pub use chain::{Chain, Joint, JointLimit, Load};
-pub use cylinder::{Actuation, Cylinder};
+pub use cylinder::{Actuation, Cylinder, Drive};
 pub use description::{GHOST, GHOST_RGBA};
 pub use error::ArmError;
 pub use hydraulics::{Arm, Hydraulics};

@@ -33,12 +33,11 @@ impl Chain {
 /// Fixes all joints but those of the arm that most of the named ones move; returns the link that the last of
 /// these moves, and the names of other joints on the way to it.
 fn hold_others(robot: &mut Robot, names: &[&str]) -> (String, Vec<String>) {
-    let turns = |joint: &Joint| {
-        let kind = matches!(joint.kind, JointKind::Revolute | JointKind::Continuous);
-        kind && joint.mimic.is_none() && names.contains(&joint.name.as_str())
+    let moves = |joint: &Joint| {
+        joint.kind.moves().is_some() && joint.mimic.is_none() && names.contains(&joint.name.as_str())
     };
-    let arm = longest_way(robot, &turns);
-    let moving: BTreeSet<usize> = arm.iter().copied().filter(|i| turns(&robot.joints[*i])).collect();
+    let arm = longest_way(robot, &moves);
+    let moving: BTreeSet<usize> = arm.iter().copied().filter(|i| moves(&robot.joints[*i])).collect();
     let last = arm.first().and_then(|i| robot.joints.get(*i)).map(|joint| joint.child.link.clone());
     let mut still = Vec::new();
     for (i, joint) in robot.joints.iter_mut().enumerate() {

@@ -5,6 +5,8 @@ use std::borrow::Cow;
 use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Deserializer, Serialize, de::Error};
 
+use crate::series;
+
 #[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(rename = "robot")]
 pub(super) struct Robot {
@@ -162,6 +164,17 @@ pub(super) enum JointKind {
     Floating,
     Planar,
     Spherical,
+}
+
+impl JointKind {
+    /// How a joint of one degree of freedom moves; `None` of the others.
+    pub(super) fn moves(self) -> Option<series::JointKind> {
+        match self {
+            Self::Revolute | Self::Continuous => Some(series::JointKind::Turns),
+            Self::Prismatic => Some(series::JointKind::Slides),
+            Self::Fixed | Self::Floating | Self::Planar | Self::Spherical => None,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Deserialize, Serialize)]

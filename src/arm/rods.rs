@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
-use super::{ArmError, Linkage, error::Witness, hydraulics::Document, urdf::turning_ranges};
+use super::{ArmError, Linkage, cylinder::Drive, error::Witness, hydraulics::Document, urdf::turning_ranges};
 
 /// Words that make a name that of a cylinder.
 const CYLINDER: [&str; 9] =
@@ -55,11 +55,13 @@ impl Rods {
         let ranges = urdf.map(turning_ranges).unwrap_or_default();
         let rod = |(joint, entry): (&String, _)| {
             let range_rad = ranges.get(joint).copied();
-            let cylinder = document.cylinder(joint, entry, range_rad, &at)?;
-            let linkage = *cylinder.linkage();
-            Ok((joint.clone(), Rod { linkage, zero_m: entry.sensor_zero_m, range_rad }))
+            let cylinder = document.cylinder(joint, entry, (None, range_rad), &at)?;
+            // The length of one that slides is a position as it is.
+            let Drive::Turns(linkage) = *cylinder.drive() else { return Ok(None) };
+            Ok(Some((joint.clone(), Rod { linkage, zero_m: entry.sensor_zero_m, range_rad })))
         };
-        Ok(Self(document.joint.iter().map(rod).collect::<Result<_, ArmError>>()?))
+        let all = document.joint.iter().map(rod).collect::<Result<Vec<_>, ArmError>>()?;
+        Ok(Self(all.into_iter().flatten().collect()))
     }
 
     /// The cylinder of a joint.

@@ -38,7 +38,7 @@ impl Kinematics {
         let at = Witness(file);
         let robot = Arc::new(parsed(text, &at)?);
         let is_known = |joint: &robot::Joint| {
-            kind(joint.kind).is_some_and(|kind| known.contains(&(joint.name.as_str(), kind)))
+            joint.kind.moves().is_some_and(|kind| known.contains(&(joint.name.as_str(), kind)))
         };
         let last = longest_way(&robot, &is_known).first().map(|i| robot.joints[*i].child.link.as_str());
         let tree = Tree::new(&robot, at)?;
@@ -55,25 +55,24 @@ impl Kinematics {
         for joint in path.iter().rev() {
             let element = format!("<joint {:?}>", joint.name);
             let (origin, child) = (tree.pose(&joint.origin, &element)?, joint.child.link.as_str());
-            match kind(joint.kind) {
+            match joint.kind.moves() {
                 None => builder.fixed(&origin, child),
                 Some(kind) => {
-                    let free = Joint { name: joint.name.clone(), limit: FREE };
-                    let moving = (free, kind == JointKind::Slides);
-                    builder.moving(moving, &origin, &tree.axis(joint, &element)?, child);
+                    let free = Joint { name: joint.name.clone(), kind, limit: FREE };
+                    builder.moving(free, &origin, &tree.axis(joint, &element)?, child);
                 }
             }
         }
         Ok(Self(builder.finish()))
     }
 
-    /// Of an arm whose joints turn.
+    /// Of an arm.
     ///
     /// # Errors
     ///
     /// [`ArmError::JointsMissing`] where one of them is not known.
     pub fn of(chain: Chain, file: &str, known: &[(&str, JointKind)]) -> Result<Self, ArmError> {
-        let is_known = |joint: &&Joint| known.contains(&(joint.name.as_str(), JointKind::Turns));
+        let is_known = |joint: &&Joint| known.contains(&(joint.name.as_str(), joint.kind));
         let unknown = chain.joints.iter().filter(|joint| !is_known(joint)).map(|joint| joint.name.clone());
         missing(file, &chain.tool_name, unknown.collect())?;
         Ok(Self(chain))
@@ -81,8 +80,7 @@ impl Kinematics {
 
     /// The joints from base to tool, and how they move.
     pub fn joints(&self) -> impl Iterator<Item = (&str, JointKind)> {
-        let kind = |slides| if slides { JointKind::Slides } else { JointKind::Turns };
-        self.0.joints.iter().zip(&self.0.steps).map(move |(joint, step)| (&*joint.name, kind(step.slides)))
+        self.0.joints.iter().map(|joint| (&*joint.name, joint.kind))
     }
 
     /// Name of the link whose frame is the tool's.
@@ -114,13 +112,4 @@ fn missing(file: &str, tool: &str, joints: Vec<String>) -> Result<(), ArmError> 
         return Ok(());
     }
     Err(ArmError::JointsMissing { file: file.to_owned(), tool: tool.to_owned(), joints })
-}
-
-/// How a joint of one degree of freedom moves; `None` of the others.
-fn kind(kind: Kind) -> Option<JointKind> {
-    match kind {
-        Kind::Revolute | Kind::Continuous => Some(JointKind::Turns),
-        Kind::Prismatic => Some(JointKind::Slides),
-        Kind::Fixed | Kind::Floating | Kind::Planar | Kind::Spherical => None,
-    }
 }

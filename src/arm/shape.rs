@@ -8,6 +8,7 @@ use super::{
     Chain, Pose,
     robot::{Body, Joint, JointKind, Origin, Visual},
 };
+use crate::series;
 
 /// A body without a mesh, about the origin of its frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -141,9 +142,12 @@ impl Chain {
         }
     }
 
-    /// Longest way from the base to the tool along the links, m.
+    /// Longest way from the base to the tool along the links, m, with joints that slide where their range ends.
     pub fn reach_m(&self) -> f64 {
-        self.steps.iter().map(|step| step.offset_m.norm()).sum::<f64>() + self.tool.translation.vector.norm()
+        let slides = self.joints.iter().filter(|joint| joint.kind == series::JointKind::Slides);
+        let slid_m = slides.map(|joint| joint.limit.upper_rad).filter(|m| m.is_finite()).sum::<f64>();
+        let offset_m = self.steps.iter().map(|step| step.offset_m.norm()).sum::<f64>();
+        offset_m + slid_m.max(0.0) + self.tool.translation.vector.norm()
     }
 
     pub(super) fn plain_shapes(&self) -> Vec<Shape> {
@@ -151,10 +155,10 @@ impl Chain {
         let last = poses.len().saturating_sub(1);
         let width_m = |i: usize| WIDTH * self.reach_m() * (1.0 - 0.5 * i as f64 / last.max(1) as f64);
         let mut shapes = Vec::new();
-        let links = self.links.iter().zip(self.link_turns()).zip(&poses);
-        for (i, ((link, turns), pose)) in links.enumerate() {
+        let links = self.links.iter().zip(self.link_moves()).zip(&poses);
+        for (i, ((link, moves), pose)) in links.enumerate() {
             let width_m = width_m(i);
-            if turns {
+            if moves {
                 let [radius_m, length_m] = PIN.map(|share| share * width_m);
                 let solid = Solid::Cylinder { radius_m, length_m };
                 shapes.push(Shape { link: i, place: link.place.inverse(), solid, rgba: STEEL });

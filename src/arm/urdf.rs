@@ -22,20 +22,23 @@ const LARGEST_TEXT: usize = 4 << 20;
 const DEEPEST: usize = 32;
 /// Joints of one file, fixed ones included.
 const MOST_JOINTS: usize = 4096;
+/// A limit beyond is in millimetres, m.
+const LONGEST_M: f64 = 100.0;
 /// A limit between the two is in degrees, rad: of five to a hundred turns, and beyond are joints without stops.
 const IN_DEGREES_RAD: [f64; 2] = [30.0, 720.0];
 
 impl Chain {
     /// Reads the text of a URDF; `file` stands for it in errors.
     ///
-    /// The tool is the link named, or the only link without children. Turning joints may be
-    /// `revolute` or `continuous`; axes need not be unit vectors.
+    /// The tool is the link named, or the only link without children. Joints may be `revolute`,
+    /// `continuous` or `prismatic`; axes need not be unit vectors.
     ///
     /// # Errors
     ///
     /// [`ArmError`], naming the element: text that is no URDF, links or joints that are missing,
     /// double or in a loop, several possible tools, moving joints beside the path to the tool,
-    /// other kinds of joints, numbers that are not finite, limits upside down or in degrees.
+    /// other kinds of joints, numbers that are not finite, limits upside down, in degrees or in
+    /// millimetres.
     pub fn from_urdf(text: &str, file: &str, tool: Option<&str>) -> Result<Self, ArmError> {
         let at = Witness(file);
         let robot = Arc::new(parsed(text, &at)?);
@@ -204,13 +207,12 @@ impl<'a> Tree<'a> {
             if joint.kind == JointKind::Fixed {
                 builder.fixed(&origin, child);
             } else {
-                let turning = (self.joint(joint, &element)?, false);
-                builder.moving(turning, &origin, &self.axis(joint, &element)?, child);
+                builder.moving(self.joint(joint, &element)?, &origin, &self.axis(joint, &element)?, child);
             }
             self.bodies(child, path.last().map(|next| next.name.as_str()), &mut builder)?;
         }
         if builder.joint_count() == 0 {
-            let found = format!("no turning joint between {:?} and {tool:?}", self.root);
+            let found = format!("no joint that moves between {:?} and {tool:?}", self.root);
             return Err(self.at.unexpected("<robot>", found, "at least one"));
         }
         Ok(builder.finish())
@@ -275,9 +277,9 @@ impl<'a> Tree<'a> {
         let given = &joint.limit;
         let (lower_rad, upper_rad) = match joint.kind {
             JointKind::Continuous => (f64::NEG_INFINITY, f64::INFINITY),
-            JointKind::Revolute => (given.lower, given.upper),
+            JointKind::Revolute | JointKind::Prismatic => (given.lower, given.upper),
             other => {
-                let expected = "revolute, continuous or fixed";
+                let expected = "revolute, continuous, prismatic or fixed";
                 return Err(self.at.unexpected(element, format!("the type {other:?}"), expected));
             }
         };
@@ -287,7 +289,11 @@ impl<'a> Tree<'a> {
         }
         if lower_rad.is_nan() || upper_rad.is_nan() || lower_rad >= upper_rad {
             let found = format!("lower {lower_rad} and upper {upper_rad}");
-            return Err(self.at.unexpected(format!("{element} <limit>"), found, "lower below upper, rad"));
+            return Err(self.at.unexpected(
+                format!("{element} <limit>"),
+                found,
+                "lower below upper, rad or m",
+            ));
         }
         let [least_rad, most_rad] = IN_DEGREES_RAD;
         let widest_rad = lower_rad.abs().max(upper_rad.abs());
@@ -299,10 +305,15 @@ impl<'a> Tree<'a> {
             let expected = "radians: degrees times 0.0174533; a joint without stops is of type continuous";
             return Err(self.at.unexpected(format!("{element} <limit>"), found, expected));
         }
+        if joint.kind == JointKind::Prismatic && widest_rad > LONGEST_M {
+            let found = format!("lower {lower_rad} and upper {upper_rad}");
+            let expected = "metres: millimetres times 0.001";
+            return Err(self.at.unexpected(format!("{element} <limit>"), found, expected));
+        }
         // The format's default, zero, means that nothing is said.
         let said = |value: f64| if value > 0.0 { value } else { f64::INFINITY };
         let (torque_nm, speed_rad_s) = (said(given.effort), said(given.velocity));
         let limit = JointLimit { lower_rad, upper_rad, torque_nm, speed_rad_s };
-        Ok(Joint { name: joint.name.clone(), limit })
+        Ok(Joint { name: joint.name.clone(), kind: joint.kind.moves().unwrap_or_default(), limit })
     }
 }

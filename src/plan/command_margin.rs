@@ -1,7 +1,10 @@
 //! How near something sent by samples comes to the limits, as a controller interpolates it.
 
 use super::{Limit, Margin, Setup};
-use crate::math::{State, cubic, linear, quintic};
+use crate::{
+    math::{State, cubic, linear, quintic},
+    series::JointKind,
+};
 
 /// What a controller makes of samples: those of the ROS 2 joint trajectory controller by what a point holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,6 +125,9 @@ impl Setup {
                 self.arm_margins(&angle_rad, &speed_rad_s, t_s + at_s, &mut tops);
             }
         }
+        for margin in &mut tops.0 {
+            margin.kind = self.kind(margin.joint);
+        }
         tops.0
     }
 
@@ -204,7 +210,7 @@ impl Tops {
         if !allowed.is_finite() {
             return;
         }
-        let found = Margin { limit, joint, value, allowed, share, t_s };
+        let found = Margin { limit, joint, kind: JointKind::default(), value, allowed, share, t_s };
         match self.0.iter_mut().find(|top| (top.limit, top.joint) == (limit, joint)) {
             Some(top) if top.share >= share => {}
             Some(top) => *top = found,

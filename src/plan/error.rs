@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::{arm::ArmError, moea::MoeaError, spline::SplineError, units::Degrees};
+use crate::{arm::ArmError, moea::MoeaError, series::JointKind, spline::SplineError};
 
 /// Why a task does not fit its arm, or cannot be searched.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -14,6 +14,16 @@ pub enum PlanError {
         "the task's joints are {task}, those of the arm are {arm}; name every joint of the arm in the task"
     )]
     JointsDiffer { task: String, arm: String },
+    /// A joint that the task has in the unit of the other kind.
+    #[error(
+        "the joint {joint} {}", match arm {
+            JointKind::Slides => "slides by the arm's description, and the task has it in degrees; give its positions_mm, speed_mm_s and \
+                so on",
+            JointKind::Turns => "turns by the arm's description, and the task has it in millimetres; give its angles_deg, speed_deg_s and \
+                so on",
+        }
+    )]
+    KindsDiffer { joint: String, arm: JointKind },
     /// A key point given by the tool that no posture within the joint ranges reaches.
     #[error("key point {point} cannot be reached")]
     Unreachable {
@@ -23,13 +33,15 @@ pub enum PlanError {
     },
     /// A key point outside a joint's range: no timing helps.
     #[error(
-        "key point {point} has {joint} at {}, its range is {} to {}: {:.3e} rad beyond it; move the key point or widen the range",
-        Degrees(*found_rad), Degrees(*lowest_rad), Degrees(*highest_rad), (lowest_rad - found_rad).max(found_rad - highest_rad)
+        "key point {point} has {joint} at {}, its range is {} to {}: {:.3e} {} beyond it; move the key point or widen the range",
+        kind.says(*found_rad), kind.says(*lowest_rad), kind.says(*highest_rad),
+        (lowest_rad - found_rad).max(found_rad - highest_rad), kind.unit()
     )]
     PointOutside {
         /// Number of the key point, from 1.
         point: usize,
         joint: String,
+        kind: JointKind,
         found_rad: f64,
         lowest_rad: f64,
         highest_rad: f64,

@@ -1,7 +1,7 @@
 //! One plan, evaluated: its objectives and how near it comes to every limit.
 
 use super::{Evaluator, Margin, PlanError, Setup, Via, excess, via::Through};
-use crate::task::Objectives;
+use crate::{series::JointKind, task::Objectives};
 
 /// A plan with its objectives, its costs by joint and its margins.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +16,9 @@ pub struct PlanEvaluation {
     pub objectives: Objectives,
     /// Sum of what it exceeds its limits by, as shares of them; 0 if all hold.
     pub violation: f64,
-    /// Root mean square jerk by joint, rad/s³.
+    /// How the joints move.
+    pub joint_kinds: Vec<JointKind>,
+    /// Root mean square jerk by joint, rad/s³; m/s³ of one that slides.
     pub rms_jerk_rad_s3: Vec<f64>,
     /// Root mean square power by joint, W.
     pub rms_power_w: Vec<f64>,
@@ -61,6 +63,7 @@ impl PlanEvaluation {
             via: via.to_vec(),
             objectives,
             violation,
+            joint_kinds: setup.joint_kinds().collect(),
             rms_jerk_rad_s3,
             rms_power_w,
             energy_j,

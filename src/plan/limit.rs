@@ -2,12 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::series::JointKind;
+
 /// A quantity with a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Limit {
-    /// Angle of a joint, rad.
+    /// Position of a joint, rad; m of one that slides, and so its derivatives.
     Position,
     /// Speed of a joint, rad/s.
     Speed,
@@ -15,7 +17,7 @@ pub enum Limit {
     Acceleration,
     /// Jerk of a joint, rad/s³.
     Jerk,
-    /// Torque of a joint, N m.
+    /// Torque of a joint, N m; force of one that slides, N.
     Torque,
     /// Speed of the rod of a joint's cylinder, m/s (the paper's linear velocity): by the task, and by
     /// what the whole pump gives that joint alone.
@@ -42,6 +44,11 @@ impl Limit {
             Self::PumpFlow => "pump flow",
             Self::ToolSpeed => "tool speed",
         }
+    }
+
+    /// The same of a joint of a kind.
+    pub fn name_of(self, kind: JointKind) -> &'static str {
+        if self == Self::Torque && kind == JointKind::Slides { "force" } else { self.name() }
     }
 
     /// Whether it is of what a motion takes, which no command has of itself.
@@ -81,6 +88,8 @@ pub struct Margin {
     pub limit: Limit,
     /// The joint, if it is a joint's.
     pub joint: Option<usize>,
+    /// How the joint moves, and so the unit of the value.
+    pub kind: JointKind,
     /// The value there, in the limit's unit; signed where the quantity is.
     pub value: f64,
     /// Largest value allowed in that direction.

@@ -69,6 +69,7 @@ impl Setup {
             margins.push(Margin {
                 limit: Limit::Position,
                 joint: Some(joint),
+                kind: self.kind(Some(joint)),
                 value: at.value,
                 allowed,
                 share: outer(at),
@@ -84,7 +85,8 @@ impl Setup {
             let at = motion.extrema(joint, quantity).peak();
             let allowed = most.copysign(at.value);
             let share = at.value.abs() / most;
-            margins.push(Margin { limit, joint: Some(joint), value: at.value, allowed, share, t_s: at.t_s });
+            let (joint, kind) = (Some(joint), self.kind(Some(joint)));
+            margins.push(Margin { limit, joint, kind, value: at.value, allowed, share, t_s: at.t_s });
         }
     }
 
@@ -130,7 +132,7 @@ impl Setup {
         share: f64,
     ) -> Option<Margin> {
         let allowed = self.allowed(motion, evaluator, limit, joint, t_s)?;
-        Some(Margin { limit, joint, value: share * allowed, allowed, share, t_s })
+        Some(Margin { limit, joint, kind: self.kind(joint), value: share * allowed, allowed, share, t_s })
     }
 
     /// Largest value allowed of a mechanical quantity at an instant, with the sign of the quantity.

@@ -12,6 +12,7 @@ mod evaluation;
 mod exact;
 mod front;
 mod goal;
+mod joint_limits;
 mod limit;
 mod margin;
 mod mesh;

@@ -38,10 +38,11 @@ pub(super) fn key_points(
         for (j, (angle_rad, &[lowest_rad, highest_rad])) in near.iter_mut().zip(range_rad).enumerate() {
             let found_rad = *angle_rad;
             if found_rad < lowest_rad - SLACK_RAD || found_rad > highest_rad + SLACK_RAD {
-                let joint = arm.chain.joints()[j].name.clone();
+                let (joint, kind) = (arm.chain.joints()[j].name.clone(), arm.chain.joints()[j].kind);
                 return Err(PlanError::PointOutside {
                     point: point + 1,
                     joint,
+                    kind,
                     found_rad,
                     lowest_rad,
                     highest_rad,

@@ -1,13 +1,18 @@
 //! The motion of a plan, sampled for plots.
 
 use super::{PlanError, PlanEvaluation, Setup};
-use crate::spline::{Motion, Quantity, Samples};
+use crate::{
+    series::JointKind,
+    spline::{Motion, Quantity, Samples},
+};
 
 /// Angles and speeds of all joints over a plan, the way of the tool, and what limits them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledMotion {
     /// Instants, s, `[n]`.
     pub t_s: Vec<f64>,
+    /// How the joints move: of those that slide read m for rad.
+    pub kinds: Vec<JointKind>,
     /// Angles, rad, `[joints][n]`.
     pub position_rad: Vec<Vec<f64>>,
     /// Speeds, rad/s, `[joints][n]`.
@@ -46,6 +51,7 @@ impl SampledMotion {
         Ok(Self {
             tool_m: (0..t_s.len()).map(place).collect(),
             tool_speed_m_s: (0..t_s.len()).map(speed).collect(),
+            kinds: setup.joint_kinds().collect(),
             arrivals_s: evaluation.times_s.clone(),
             key_points_rad,
             range_rad: setup.limits.iter().map(|limits| limits.range_rad).collect(),

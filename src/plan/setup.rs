@@ -4,10 +4,12 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{
     Limit, PlanError,
+    joint_limits::{JointLimits, merged},
     posture::{key_points, poses},
 };
 use crate::{
     arm::{Arm, Inertia, Load, Pose},
+    series::JointKind,
     spline::{Degree, Dwell, Ends, KeyPoints, Motion},
     task::{Boundary, Task},
 };
@@ -17,46 +19,6 @@ const ROUNDED_RAD: f64 = 1e-9;
 
 /// A departure within this is at zero, s.
 const FROM_ZERO_S: f64 = 1e-9;
-
-/// Limits of a joint: the tighter of task and arm, infinite where there are none.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct JointLimits {
-    /// Lowest and highest angle, rad.
-    pub(super) range_rad: [f64; 2],
-    /// The same, with both ends where there is one.
-    pub(super) judged_rad: [f64; 2],
-    pub(super) speed_rad_s: f64,
-    pub(super) acceleration_rad_s2: f64,
-    pub(super) jerk_rad_s3: f64,
-    pub(super) torque_n_m: f64,
-    /// Rod speeds while extending and while retracting, m/s.
-    pub(super) rod_speed_m_s: [f64; 2],
-}
-
-/// A range with one end is taken to end on the other side, too, at so many times the farthest key point's distance from it:
-/// no motion goes there.
-const ONE_ENDED: f64 = 4.0;
-
-impl JointLimits {
-    /// Middle and half the width of the range, rad; `None` without end stops.
-    pub(super) fn range(&self) -> Option<(f64, f64)> {
-        let [low, high] = self.judged_rad;
-        (low.is_finite() && high.is_finite()).then_some((0.5 * (low + high), 0.5 * (high - low)))
-    }
-
-    /// With the range judged as this joint's key points need it.
-    fn judged(mut self, key_points_rad: impl Iterator<Item = f64>) -> Self {
-        let [low, high] = self.range_rad;
-        let end = if low.is_finite() { low } else { high };
-        let far = ONE_ENDED * key_points_rad.map(|q| (q - end).abs()).fold(1.0, f64::max);
-        self.judged_rad = match (low.is_finite(), high.is_finite()) {
-            (true, false) => [low, low + far],
-            (false, true) => [high - far, high],
-            _ => [low, high],
-        };
-        self
-    }
-}
 
 /// A task on its arm. All joint arrays are in the arm's order, base first.
 #[derive(Debug, Clone)]
@@ -102,6 +64,11 @@ impl Setup {
         let order = order
             .filter(|_| task.joints.len() == joints)
             .ok_or_else(|| PlanError::JointsDiffer { task: task.joints.join(", "), arm: names.join(", ") })?;
+        for (joint, &own) in arm.chain.joints().iter().zip(&order) {
+            if task.kinds[own].is_some_and(|kind| kind != joint.kind) {
+                return Err(PlanError::KindsDiffer { joint: joint.name.clone(), arm: joint.kind });
+            }
+        }
         let limits: Vec<JointLimits> =
             order.iter().enumerate().map(|(j, &own)| merged(task, &arm, j, own)).collect();
         let range_rad: Vec<[f64; 2]> = limits.iter().map(|limits| limits.range_rad).collect();
@@ -187,6 +154,18 @@ impl Setup {
     /// Names of the joints, base first.
     pub fn joint_names(&self) -> Vec<String> {
         self.arm.chain.joints().iter().map(|joint| joint.name.clone()).collect()
+    }
+
+    /// How the joints move, base first.
+    pub fn joint_kinds(&self) -> impl Iterator<Item = JointKind> + '_ {
+        self.arm.chain.joints().iter().map(|joint| joint.kind)
+    }
+
+    /// How a joint moves; turning of the arm as a whole.
+    pub(super) fn kind(&self, joint: Option<usize>) -> JointKind {
+        joint
+            .and_then(|joint| self.arm.chain.joints().get(joint))
+            .map_or(JointKind::Turns, |joint| joint.kind)
     }
 
     /// Number of intervals between key points: the variables of a plan.
@@ -290,26 +269,6 @@ fn arrivals(interval_s: &[f64], dwell_before_s: &[f64]) -> Vec<f64> {
         t_s.push(now_s);
     }
     t_s
-}
-
-fn merged(task: &Task, arm: &Arm, joint: usize, own: usize) -> JointLimits {
-    let (task, limit) = (&task.limits[own], &arm.chain.joints()[joint].limit);
-    let [lower, upper] = task.range_rad.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-    let cylinder = arm.hydraulics.cylinders()[joint];
-    let rod_speed_m_s = cylinder.map_or([f64::INFINITY; 2], |cylinder| {
-        let (push_m2, pull_m2) = (cylinder.push_area_m2(), cylinder.pull_area_m2());
-        [push_m2, pull_m2].map(|area_m2| task.rod_speed_m_s.min(arm.hydraulics.pump_flow_m3_s() / area_m2))
-    });
-    let range_rad = [lower.max(limit.lower_rad), upper.min(limit.upper_rad)];
-    JointLimits {
-        range_rad,
-        judged_rad: range_rad,
-        speed_rad_s: task.velocity_rad_s.min(limit.speed_rad_s),
-        acceleration_rad_s2: task.acceleration_rad_s2,
-        jerk_rad_s3: task.jerk_rad_s3,
-        torque_n_m: task.torque_n_m.min(limit.torque_nm),
-        rod_speed_m_s,
-    }
 }
 
 fn ends(task: &Task, order: &[usize]) -> Ends {

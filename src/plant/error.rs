@@ -54,6 +54,9 @@ pub enum PlantError {
     /// A joint that nothing moves.
     #[error("joint {joint} has no cylinder; give it one in the arm's file of cylinders")]
     NoCylinder { joint: String },
+    /// A joint that the simulation has no mechanics for.
+    #[error("joint {joint} slides; only arms whose joints all turn are simulated")]
+    Slides { joint: String },
     /// A joint that the command leaves out.
     #[error("the command has no {what} for joint {joint}; a track with positions and speeds is needed")]
     NoCommand { joint: String, what: &'static str },

@@ -56,7 +56,7 @@ pub use simulate::simulate;
 pub use truth::{JointTruth, Truth};
 pub use variation::Variation;
 
-use crate::arm::{Arm, Chain, Cylinder, Joint};
+use crate::arm::{Arm, Chain, Cylinder, Drive, Joint};
 use cylinder::Size;
 
 /// Step of the simulation, s.
@@ -99,6 +99,9 @@ impl Plant {
         }
         let axis = |(joint, cylinder): (&Joint, &Option<Cylinder>)| {
             let cylinder = cylinder.ok_or_else(|| PlantError::NoCylinder { joint: joint.name.clone() })?;
+            let Drive::Turns(linkage) = *cylinder.drive() else {
+                return Err(PlantError::Slides { joint: joint.name.clone() });
+            };
             let ends_m = [joint.limit.lower_rad, joint.limit.upper_rad].map(|q| {
                 let (sin, cos) = q.sin_cos();
                 cylinder.length_and_lever(sin, cos).0
@@ -109,7 +112,7 @@ impl Plant {
                 rod_area_m2: cylinder.pull_area_m2(),
                 stroke_m: ends_m[0].max(ends_m[1]) - shortest_m,
             };
-            Ok(Axis { cylinder, size, shortest_m, sense: cylinder.linkage().sense })
+            Ok(Axis { cylinder, size, shortest_m, sense: linkage.sense })
         };
         let axes = joints
             .iter()

@@ -92,15 +92,18 @@ pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
     let beyond: Vec<String> = excited
         .beyond
         .iter()
-        .map(|(joint, [sent, allowed])| {
-            format!("{joint} {} of {} deg/s", number(Turns, *sent), number(Turns, *allowed))
+        .map(|(joint, kind, [sent, allowed])| {
+            format!("{joint} {} of {}", number(*kind, *sent), with(Dimension::Speed, *kind, *allowed))
         })
         .collect();
+    let slower = [(Turns, "--max-speed-deg-s"), (Slides, "--max-speed-mm-s")].into_iter();
+    let slower = slower.filter(|(kind, _)| excited.beyond.iter().any(|(_, own, _)| own == kind));
+    let slower: Vec<&str> = slower.map(|(_, option)| option).collect();
     let beyond = (!beyond.is_empty()).then(|| {
         Sentence::advice(format!(
-            "Limits of the task or of the arm that they exceed: {}. If the machine must keep them, send no joint faster: \
-             --max-speed-deg-s.",
-            beyond.join(", ")
+            "Limits of the task or of the arm that they exceed: {}. If the machine must keep them, send no joint faster: {}.",
+            beyond.join(", "),
+            slower.join(", ")
         ))
     });
     let beyond_ends = BEYOND.into_iter().filter(|(kind, _)| has(*kind));

@@ -74,6 +74,11 @@ impl JointKind {
         }
     }
 
+    /// Whether it is one that turns.
+    pub fn turns(&self) -> bool {
+        *self == Self::Turns
+    }
+
     /// The unit of its position in text.
     pub const fn unit(self) -> &'static str {
         self.quantity().unit()

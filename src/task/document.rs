@@ -1,4 +1,5 @@
-//! The task file as it is written: degrees and names, every quantity with its unit in its key.
+//! The task file as it is written: degrees, millimetres of joints that slide, and names; every quantity with its unit in its
+//! key.
 
 use std::collections::BTreeMap;
 
@@ -62,7 +63,7 @@ pub(super) struct Document {
     pub(super) weights: Option<Spanned<BTreeMap<String, Spanned<f64>>>>,
 }
 
-/// A pose that the plan passes through; give `angles_deg` or `tool`.
+/// A pose that the plan passes through; give the joints' positions or `tool`.
 #[derive(Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -70,9 +71,12 @@ pub(super) struct Point {
     /// What people call it.
     #[serde(default)]
     pub(super) name: String,
-    /// Angle of every joint.
+    /// Angle of every joint that turns.
     #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
     pub(super) angles_deg: Option<Spanned<ByJoint>>,
+    /// Position of every joint that slides.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) positions_mm: Option<Spanned<ByJoint>>,
     /// Where the tool is; the joints follow by inverse kinematics, near the key point before.
     pub(super) tool: Option<Tool>,
     /// How long the arm rests here, s.
@@ -107,12 +111,21 @@ pub(super) struct End {
     /// Speed by joint.
     #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
     pub(super) speed_deg_s: Option<Spanned<ByJoint>>,
+    /// Speed by joint that slides.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) speed_mm_s: Option<Spanned<ByJoint>>,
     /// Acceleration by joint.
     #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
     pub(super) acceleration_deg_s2: Option<Spanned<ByJoint>>,
+    /// Acceleration by joint that slides.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) acceleration_mm_s2: Option<Spanned<ByJoint>>,
     /// Jerk by joint; a quintic takes none.
     #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
     pub(super) jerk_deg_s3: Option<Spanned<ByJoint>>,
+    /// Jerk by joint that slides; a quintic takes none.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) jerk_mm_s3: Option<Spanned<ByJoint>>,
 }
 
 /// Limits; joints left out have those of the arm only.
@@ -123,18 +136,33 @@ pub(super) struct Limits {
     /// Lowest and highest angle by joint.
     #[cfg_attr(test, schemars(with = "Option<BTreeMap<String, [f64; 2]>>"))]
     pub(super) range_deg: Option<Spanned<BTreeMap<String, [f64; 2]>>>,
+    /// Lowest and highest position by joint that slides.
+    #[cfg_attr(test, schemars(with = "Option<BTreeMap<String, [f64; 2]>>"))]
+    pub(super) range_mm: Option<Spanned<BTreeMap<String, [f64; 2]>>>,
     /// Speed by joint.
     #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
     pub(super) speed_deg_s: Option<Spanned<ByJoint>>,
+    /// Speed by joint that slides.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) speed_mm_s: Option<Spanned<ByJoint>>,
     /// Acceleration by joint.
     #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
     pub(super) acceleration_deg_s2: Option<Spanned<ByJoint>>,
+    /// Acceleration by joint that slides.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) acceleration_mm_s2: Option<Spanned<ByJoint>>,
     /// Jerk by joint.
     #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
     pub(super) jerk_deg_s3: Option<Spanned<ByJoint>>,
+    /// Jerk by joint that slides.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) jerk_mm_s3: Option<Spanned<ByJoint>>,
     /// Torque by joint, N m.
     #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
     pub(super) torque_n_m: Option<Spanned<ByJoint>>,
+    /// Force by joint that slides, N.
+    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
+    pub(super) force_n: Option<Spanned<ByJoint>>,
     /// Speed of a cylinder's rod by joint, m/s.
     #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
     pub(super) rod_speed_m_s: Option<Spanned<ByJoint>>,

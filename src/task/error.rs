@@ -21,6 +21,12 @@ pub enum TaskError {
     /// A joint that is left out where all are needed.
     #[error("line {line}: {key} has no value for the joint {joint:?}; give one for each of {declared}")]
     MissingJoint { line: usize, key: String, joint: String, declared: String },
+    /// A joint given in degrees and in millimetres.
+    #[error(
+        "line {line}: {key} names the joint {joint:?}, which line {said} has in the other unit; degrees are for a joint that \
+         turns, millimetres for one that slides"
+    )]
+    TwoKinds { line: usize, key: String, joint: String, said: usize },
     /// A list of the wrong length.
     #[error("line {line}: {key} has {found} values, {expected} are needed ({why})")]
     Length { line: usize, key: String, found: usize, expected: usize, why: &'static str },
@@ -28,6 +34,8 @@ pub enum TaskError {
     #[error("line {line}: {key} is {found}; {expected}")]
     Value { line: usize, key: String, found: String, expected: &'static str },
     /// A key point that says where it is twice, or not at all.
-    #[error("line {line}: a key point has either angles_deg or tool, this one has {found}")]
+    #[error(
+        "line {line}: a key point has either positions of the joints (angles_deg, positions_mm of those that slide) or tool, this one has {found}"
+    )]
     Place { line: usize, found: &'static str },
 }

@@ -1,13 +1,13 @@
 //! From the document to a checked task: degrees become radians, names become indices.
 
-use std::{collections::BTreeMap, ops::Range, path::Path};
+use std::{collections::BTreeMap, path::Path};
 
 use toml::Spanned;
 
 use super::{
-    ArmSource, Boundary, ByObjective, Ceilings, JointLimits, KeyPoint, Objective, Place, Task, TaskError,
-    Weights,
-    document::{ByJoint, Document, End, Limits, Point, Tool},
+    ArmSource, ByObjective, Ceilings, KeyPoint, Objective, Place, Task, TaskError, Weights,
+    document::{Document, Point, Tool},
+    joints::{Joints, line_of, positions},
     objective::Row,
 };
 use crate::{input_file, units::radians_from_degrees};
@@ -42,8 +42,10 @@ fn parse(text: &str) -> Result<Task, TaskError> {
         line: line_of(text, &error.span().unwrap_or(0..0)),
         message: syntax(error.message()),
     })?;
-    let reader = Reader { text, joints: file.joints.get_ref() };
+    let joints = Joints { text, names: file.joints.get_ref() };
+    let reader = Reader { text, joints };
     reader.joints(&file.joints)?;
+    let kinds = joints.kinds(&file)?;
     let degree = match &file.degree {
         None => 6,
         Some(degree) if (5..=7).contains(degree.get_ref()) => *degree.get_ref(),
@@ -90,25 +92,20 @@ fn parse(text: &str) -> Result<Task, TaskError> {
         title: file.title,
         arm,
         joints: file.joints.get_ref().clone(),
+        kinds,
         degree,
         points,
         payload_kg,
         payload_size_m: reader.size(file.payload_size_m.as_ref())?,
-        start: reader.boundary("start", file.start.as_ref())?,
-        end: reader.boundary("end", file.end.as_ref())?,
+        start: joints.boundary("start", file.start.as_ref())?,
+        end: joints.boundary("end", file.end.as_ref())?,
         interval_s,
-        limits: reader.limits(&file.limits)?,
+        limits: joints.limits(&file.limits)?,
         tool_speed_m_s: bound("limits.tool_speed_m_s", &file.limits.tool_speed_m_s)?.unwrap_or(f64::INFINITY),
         ceilings: reader.ceilings(&file.objectives)?,
         weights: reader.weights(file.weights.as_ref())?,
         times_s,
     })
-}
-
-/// The line, from 1, in which a span starts.
-fn line_of(text: &str, span: &Range<usize>) -> usize {
-    let start = span.start.min(text.len());
-    1 + memchr::memchr_iter(b'\n', &text.as_bytes()[..start]).count()
 }
 
 /// A key without its unit is the commonest slip: say which keys there are.
@@ -122,14 +119,10 @@ fn syntax(message: &str) -> String {
 
 struct Reader<'a> {
     text: &'a str,
-    joints: &'a [String],
+    joints: Joints<'a>,
 }
 
 impl Reader<'_> {
-    fn declared(&self) -> String {
-        self.joints.join(", ")
-    }
-
     fn value<T: std::fmt::Display>(
         &self,
         key: &str,
@@ -224,54 +217,13 @@ impl Reader<'_> {
         }
     }
 
-    /// Values in the order of the joints; `otherwise` for those left out, an error if it is none.
-    fn by_joint<T: Copy>(
-        &self,
-        key: &str,
-        given: &Spanned<BTreeMap<String, T>>,
-        otherwise: Option<T>,
-    ) -> Result<Vec<T>, TaskError> {
-        let line = line_of(self.text, &given.span());
-        let values = given.get_ref();
-        if let Some(joint) = values.keys().find(|name| !self.joints.contains(name)) {
-            let (key, joint) = (key.to_owned(), joint.clone());
-            return Err(TaskError::UnknownJoint { line, key, joint, declared: self.declared() });
-        }
-        let of = |joint: &String| {
-            values.get(joint).copied().or(otherwise).ok_or_else(|| TaskError::MissingJoint {
-                line,
-                key: key.to_owned(),
-                joint: joint.clone(),
-                declared: self.declared(),
-            })
-        };
-        self.joints.iter().map(of).collect()
-    }
-
-    /// As [`Self::by_joint`], finite and in radians.
-    fn angles(
-        &self,
-        key: &str,
-        given: &Spanned<ByJoint>,
-        otherwise: Option<f64>,
-    ) -> Result<Vec<f64>, TaskError> {
-        let values = self.by_joint(key, given, otherwise)?;
-        match values.iter().find(|value| !value.is_finite()) {
-            Some(value) => {
-                let line = line_of(self.text, &given.span());
-                let expected = "finite numbers are expected";
-                Err(TaskError::Value { line, key: key.to_owned(), found: value.to_string(), expected })
-            }
-            None => Ok(values.into_iter().map(radians_from_degrees).collect()),
-        }
-    }
-
     fn point(&self, given: &Spanned<Point>) -> Result<KeyPoint, TaskError> {
         let line = line_of(self.text, &given.span());
         let point = given.get_ref();
-        let place = match (&point.angles_deg, &point.tool) {
-            (Some(angles), None) => Place::Joints(self.angles("angles_deg", angles, None)?),
-            (None, Some(tool)) => {
+        let positions = positions(point);
+        let place = match (positions.is_given(), &point.tool) {
+            (true, None) => Place::Joints(self.joints.values(&positions, None)?),
+            (false, Some(tool)) => {
                 let Tool { x_m, z_m, pitch_deg, fixed_angles } = *tool;
                 if ![x_m, z_m, pitch_deg].iter().all(|v| v.is_finite()) {
                     let found = format!("{x_m}, {z_m}, {pitch_deg}");
@@ -280,8 +232,8 @@ impl Reader<'_> {
                 }
                 Place::Tool { x_m, z_m, pitch_rad: radians_from_degrees(pitch_deg), fixed_angles }
             }
-            (Some(_), Some(_)) => return Err(TaskError::Place { line, found: "both" }),
-            (None, None) => return Err(TaskError::Place { line, found: "neither" }),
+            (true, Some(_)) => return Err(TaskError::Place { line, found: "both" }),
+            (false, None) => return Err(TaskError::Place { line, found: "neither" }),
         };
         let dwell_s = point.dwell_s.as_ref().map(|dwell| self.positive("dwell_s", dwell)).transpose()?;
         let payload_kg = match &point.payload_kg {
@@ -325,70 +277,5 @@ impl Reader<'_> {
             return Err(TaskError::Value { line, key, found, expected: "increasing times are expected" });
         }
         Ok(times.clone())
-    }
-
-    fn boundary(&self, end: &str, given: Option<&End>) -> Result<Boundary, TaskError> {
-        let rest = vec![0.0; self.joints.len()];
-        let of = |quantity: &str, values: Option<&Spanned<ByJoint>>| match values {
-            None => Ok(rest.clone()),
-            Some(values) => self.angles(&format!("{end}.{quantity}"), values, Some(0.0)),
-        };
-        Ok(Boundary {
-            velocity_rad_s: of("speed_deg_s", given.and_then(|e| e.speed_deg_s.as_ref()))?,
-            acceleration_rad_s2: of(
-                "acceleration_deg_s2",
-                given.and_then(|e| e.acceleration_deg_s2.as_ref()),
-            )?,
-            jerk_rad_s3: of("jerk_deg_s3", given.and_then(|e| e.jerk_deg_s3.as_ref()))?,
-        })
-    }
-
-    fn limits(&self, given: &Limits) -> Result<Vec<JointLimits>, TaskError> {
-        let of = |key: &str, values: &Option<Spanned<ByJoint>>| -> Result<Vec<f64>, TaskError> {
-            let Some(values) = values else { return Ok(vec![f64::INFINITY; self.joints.len()]) };
-            let found = self.by_joint(key, values, Some(f64::INFINITY))?;
-            match found.iter().find(|value| value.is_nan() || **value <= 0.0) {
-                Some(value) => {
-                    let line = line_of(self.text, &values.span());
-                    let expected = "limits above zero are expected";
-                    Err(TaskError::Value { line, key: key.to_owned(), found: value.to_string(), expected })
-                }
-                None => Ok(found),
-            }
-        };
-        let ranges = match &given.range_deg {
-            None => vec![None; self.joints.len()],
-            Some(ranges) => {
-                let wide = [f64::NEG_INFINITY, f64::INFINITY];
-                let found = self.by_joint("range_deg", ranges, Some(wide))?;
-                if let Some([low, high]) =
-                    found.iter().find(|[low, high]| low >= high || low.is_nan() || high.is_nan())
-                {
-                    let line = line_of(self.text, &ranges.span());
-                    let found = format!("[{low}, {high}]");
-                    let expected = "the lowest angle is expected first";
-                    return Err(TaskError::Value { line, key: "range_deg".into(), found, expected });
-                }
-                found
-                    .into_iter()
-                    .map(|range| range[0].max(-range[1]).is_finite().then(|| range.map(radians_from_degrees)))
-                    .collect()
-            }
-        };
-        let speed = of("limits.speed_deg_s", &given.speed_deg_s)?;
-        let acceleration = of("limits.acceleration_deg_s2", &given.acceleration_deg_s2)?;
-        let jerk = of("limits.jerk_deg_s3", &given.jerk_deg_s3)?;
-        let torque = of("limits.torque_n_m", &given.torque_n_m)?;
-        let rod_speed = of("limits.rod_speed_m_s", &given.rod_speed_m_s)?;
-        Ok((0..self.joints.len())
-            .map(|j| JointLimits {
-                range_rad: ranges[j],
-                velocity_rad_s: radians_from_degrees(speed[j]),
-                acceleration_rad_s2: radians_from_degrees(acceleration[j]),
-                jerk_rad_s3: radians_from_degrees(jerk[j]),
-                torque_n_m: torque[j],
-                rod_speed_m_s: rod_speed[j],
-            })
-            .collect())
     }
 }

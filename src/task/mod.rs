@@ -1,17 +1,21 @@
 //! What the arm is to do: key points, dwells, payload, limits, and how to weigh the objectives.
 //!
-//! A task file is TOML with angles in degrees, as the paper's tables have them; this folder is the
-//! edge where they become radians. A task knows the names of joints and nothing of links.
+//! A task file is TOML with angles in degrees, as the paper's tables have them, and positions of joints that slide in
+//! millimetres; this folder is the edge where they become radians and metres. A task knows the names of joints and nothing of
+//! links. Of a joint that slides read m for rad and N for N m.
 
 mod by_objective;
 mod document;
 mod error;
 mod file;
+mod joints;
 mod objective;
 
 pub use by_objective::{ByObjective, Ceilings, Objectives, Weights};
 pub use error::TaskError;
 pub use objective::Objective;
+
+use crate::series::JointKind;
 
 /// Where the arm's description is.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,7 +49,7 @@ pub struct KeyPoint {
 /// Where a key point is.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Place {
-    /// Joint angles, rad, in the order of [`Task::joints`].
+    /// Joint positions, rad or m, in the order of [`Task::joints`].
     Joints(Vec<f64>),
     /// Position and pitch of the tool in the arm's plane, to be solved for the joints.
     Tool {
@@ -97,6 +101,8 @@ pub struct Task {
     pub arm: ArmSource,
     /// Joint names; the order of every array.
     pub joints: Vec<String>,
+    /// How they move, by the units that the file gives them; `None` of those that it says nothing of.
+    pub kinds: Vec<Option<JointKind>>,
     /// Degree of the spline: 5, 6 or 7.
     pub degree: u8,
     /// At least two key points.

@@ -1,4 +1,4 @@
-"""Writes arm-pinocchio.json and spatial-7.urdf: what Pinocchio makes of three arms.
+"""Writes arm-pinocchio.json, spatial-7.urdf and sliding-5.urdf: what Pinocchio makes of four arms.
 
 pip install pin==4.1.0 numpy; python tests/reference/generate_arm.py
 The tests read the files; this script runs only to make them anew.
@@ -32,32 +32,52 @@ def inertial(rng):
             f'<mass value="{float(mass.sum())!r}"/><inertia {entries}/></inertial>')
 
 
+def joint(rng, name, kind, parent, child, extra=""):
+    origin = f'<origin xyz="{vector(rng.uniform(-0.4, 0.4, 3))}" rpy="{vector(rng.uniform(-3, 3, 3))}"/>'
+    return (f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+            f"{origin}{extra}</joint>")
+
+
+def sliding():
+    """Five skew joints, of which the second and the fourth slide."""
+    rng = np.random.default_rng(5)
+    lines = ['<?xml version="1.0"?>', "<!-- Written by generate_arm.py. -->", '<robot name="sliding_5">',
+             f'<link name="base">{inertial(rng)}</link>']
+    parent = "base"
+    for i in range(1, 6):
+        axis = f'<axis xyz="{vector(rng.normal(size=3))}"/>'
+        limit = '<limit lower="-2.5" upper="2.5" effort="100" velocity="2"/>'
+        kind = "prismatic" if i in (2, 4) else "revolute"
+        lines.append(joint(rng, f"q{i}", kind, parent, f"link{i}", axis + limit))
+        lines.append(f'<link name="link{i}">{inertial(rng)}</link>')
+        parent = f"link{i}"
+    lines.append(joint(rng, "flange", "fixed", parent, "tool"))
+    lines += ['<link name="tool"/>', "</robot>"]
+    return "\n".join(lines) + "\n"
+
+
 def spatial():
     """Seven skew joints, one without limits, a fixed joint between and a camera at the side."""
     rng = np.random.default_rng(7)
     lines = ['<?xml version="1.0"?>', "<!-- Written by generate_arm.py. -->", '<robot name="spatial_7">',
              f'<link name="base">{inertial(rng)}</link>']
 
-    def joint(name, kind, parent, child, extra=""):
-        origin = f'<origin xyz="{vector(rng.uniform(-0.4, 0.4, 3))}" rpy="{vector(rng.uniform(-3, 3, 3))}"/>'
-        lines.append(f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
-                     f"{origin}{extra}</joint>")
-
     parent = "base"
     for i in range(1, 8):
         axis = f'<axis xyz="{vector(rng.normal(size=3))}"/>'
         limit = '<limit lower="-2.5" upper="2.5" effort="100" velocity="2"/>'
         if i == 4:
-            joint("bracket", "fixed", parent, "bracket")
+            lines.append(joint(rng, "bracket", "fixed", parent, "bracket"))
             lines.append(f'<link name="bracket">{inertial(rng)}</link>')
             parent = "bracket"
-        joint(f"q{i}", "continuous" if i == 3 else "revolute", parent, f"link{i}", axis + (limit if i != 3 else ""))
+        kind, limit = ("continuous", "") if i == 3 else ("revolute", limit)
+        lines.append(joint(rng, f"q{i}", kind, parent, f"link{i}", axis + limit))
         lines.append(f'<link name="link{i}">{inertial(rng)}</link>')
         parent = f"link{i}"
         if i == 5:
-            joint("mount", "fixed", parent, "camera")
+            lines.append(joint(rng, "mount", "fixed", parent, "camera"))
             lines.append(f'<link name="camera">{inertial(rng)}</link>')
-    joint("flange", "fixed", parent, "tool")
+    lines.append(joint(rng, "flange", "fixed", parent, "tool"))
     lines += ['<link name="tool"/>', "</robot>"]
     return "\n".join(lines) + "\n"
 
@@ -95,10 +115,12 @@ def states(path, seed):
 
 def main():
     (HERE / "spatial-7.urdf").write_text(spatial())
+    (HERE / "sliding-5.urdf").write_text(sliding())
     arms = {
         "arm": states(SAMPLES / "arm.urdf", 1),
         "arm-with-plate": states(SAMPLES / "arm-with-plate.urdf", 2),
         "spatial-7": states(HERE / "spatial-7.urdf", 3),
+        "sliding-5": states(HERE / "sliding-5.urdf", 4),
     }
     document = {"pinocchio": pin.__version__, "pose": "rotation and place, 3 by 4, row by row", "arms": arms}
     (HERE / "arm-pinocchio.json").write_text(json.dumps(document, separators=(",", ":")) + "\n")

@@ -20,7 +20,8 @@ Small logs of two simulated machines whose parameters (the truth) are known. Thi
     cargo run --release --example sample_logs -- sample-logs
 
 The same source gives the same bytes; `tests/it/sample_logs.rs` compares them. Each MCAP log carries its truth as metadata,
-named `truth`, or `hydrotrace.plant` for the hydraulic arm.
+named `truth`, or `hydrotrace.plant` for the hydraulic arm. `crane` holds no log: a loader crane whose last joint slides, its
+cylinders and a task, to plan.
 ";
 
 const COLUMNS: &str = "

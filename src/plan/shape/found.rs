@@ -6,7 +6,9 @@ use super::{
     descend::descend,
 };
 use crate::{
-    plan::{Choice, KEPT_SHARE, Limit, Margin, PlanEvaluation, Setup, Timing, Via, setup::JointLimits},
+    plan::{
+        Choice, KEPT_SHARE, Limit, Margin, PlanEvaluation, Setup, Timing, Via, joint_limits::JointLimits,
+    },
     task::{Ceilings, Objective},
     threads,
 };

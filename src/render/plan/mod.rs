@@ -17,17 +17,19 @@ pub(crate) use page::{judged_page, page};
 pub use rows::limit_cell;
 pub(crate) use tables::{broken_lines, ceiling_lines, document, judged_document};
 
-use crate::{plan::Limit, text::fixed, units::degrees_from_radians};
+use crate::{plan::Limit, series::JointKind, text::fixed, units::degrees_from_radians};
 
-/// A value of a limited quantity as people read it, with its unit.
-pub(super) fn shown(limit: Limit, value: f64) -> String {
-    let deg = degrees_from_radians(value);
+/// A value of a limited quantity of a joint of a kind as people read it, with its unit.
+pub(super) fn shown(limit: Limit, kind: JointKind, value: f64) -> String {
+    let slides = kind == JointKind::Slides;
+    let (of_joint, decimals) = if slides { (1e3 * value, 1) } else { (degrees_from_radians(value), 2) };
+    let unit = |turns: &'static str, slid: &'static str| if slides { slid } else { turns };
     let (value, decimals, unit) = match limit {
-        Limit::Position => (deg, 2, "deg"),
-        Limit::Speed => (deg, 2, "deg/s"),
-        Limit::Acceleration => (deg, 2, "deg/s2"),
-        Limit::Jerk => (deg, 2, "deg/s3"),
-        Limit::Torque => (value, 0, "N m"),
+        Limit::Position => (of_joint, decimals, unit("deg", "mm")),
+        Limit::Speed => (of_joint, decimals, unit("deg/s", "mm/s")),
+        Limit::Acceleration => (of_joint, decimals, unit("deg/s2", "mm/s2")),
+        Limit::Jerk => (of_joint, decimals, unit("deg/s3", "mm/s3")),
+        Limit::Torque => (value, 0, unit("N m", "N")),
         Limit::RodSpeed => (value * 1e3, 1, "mm/s"),
         Limit::RodForce => (value / 1e3, 2, "kN"),
         Limit::PumpFlow => (value * 6e4, 1, "l/min"),

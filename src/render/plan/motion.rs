@@ -1,12 +1,15 @@
-//! The motion of a plan: angle and speed of each joint with key points and limits, and the way of the tool.
+//! The motion of a plan: position and speed of each joint with key points and limits, and the way of the tool.
 
 use crate::{
     plan::{Limit, SampledMotion},
-    render::kit::page::{
-        chart::{Chart, Panel, Role, Series, Size, hundredths, span},
-        scene::{Scene, broadest_rad},
+    render::{
+        kit::page::{
+            chart::{Chart, Panel, Role, Series, Size, hundredths, span},
+            scene::{Scene, broadest_rad},
+        },
+        metric::on_paper,
     },
-    units::degrees_from_radians,
+    series::JointKind,
     workflow::plan::Course,
 };
 
@@ -25,12 +28,26 @@ pub(super) fn motion_charts(joints: &[String], course: &Course) -> Vec<(String, 
 fn joint_chart(joint: &str, k: usize, course: &Course) -> Chart {
     let motion = &course.motion;
     let ends = [0.0, motion.t_s.last().copied().unwrap_or_default()];
-    let points = degrees(&motion.key_points_rad[k]);
+    let kind = motion.kinds.get(k).copied().unwrap_or_default();
+    let points: Vec<f64> = motion.key_points_rad[k].iter().map(|q| hundredths(on_paper(kind, *q))).collect();
     let names = (1..=points.len()).map(|point| point.to_string()).collect();
     let key_points = Series { names, ..Series::of("key point", Role::Named, 1, points) };
     let most = motion.speed_limit_rad_s[k];
-    let angle = panel("Angle (deg)", ("angle", Role::Measured), &motion.position_rad[k], motion.range_rad[k]);
-    let mut speed = panel("Speed (deg/s)", ("speed", Role::Error), &motion.velocity_rad_s[k], [-most, most]);
+    let [position, speed, name] = if kind == JointKind::Slides {
+        ["Position (mm)", "Speed (mm/s)", "position"]
+    } else {
+        ["Angle (deg)", "Speed (deg/s)", "angle"]
+    };
+    let panel = |label, as_what, values: &[f64], limits: [f64; 2]| {
+        panel(
+            label,
+            as_what,
+            values.iter().map(|v| hundredths(on_paper(kind, *v))).collect(),
+            limits.map(|limit| on_paper(kind, limit)),
+        )
+    };
+    let angle = panel(position, (name, Role::Measured), &motion.position_rad[k], motion.range_rad[k]);
+    let mut speed = panel(speed, ("speed", Role::Error), &motion.velocity_rad_s[k], [-most, most]);
     let mut angle = Panel { share: 0.55, ..angle };
     speed.share = 0.45;
     angle.series.push(key_points);
@@ -49,12 +66,10 @@ fn joint_chart(joint: &str, k: usize, course: &Course) -> Chart {
 }
 
 /// A quantity with those of its limits that are near.
-fn panel(label: &str, (name, role): (&str, Role), values_rad: &[f64], limits_rad: [f64; 2]) -> Panel {
-    let values = degrees(values_rad);
+fn panel(label: &str, (name, role): (&str, Role), values: Vec<f64>, limits: [f64; 2]) -> Panel {
     let [low, high] = span(values.iter().copied());
     let near = |limit: &f64| *limit >= low - NEAR * (high - low) && *limit <= high + NEAR * (high - low);
     let mut series = vec![Series::of(name, role, 0, values)];
-    let limits = limits_rad.map(degrees_from_radians);
     let guide = |limit: f64| Series::of("limit", Role::Guide, 2, vec![hundredths(limit); 2]);
     series.extend(limits.into_iter().filter(near).map(guide));
     Panel::of(label.to_owned(), 0.5, series)
@@ -68,7 +83,7 @@ fn used(joint: usize, course: &Course) -> String {
     let each = own
         .iter()
         .take(2)
-        .map(|margin| format!("{:.0} % of its {}", 100.0 * margin.share, margin.limit.name()));
+        .map(|margin| format!("{:.0} % of its {}", 100.0 * margin.share, margin.limit.name_of(margin.kind)));
     let each: Vec<String> = each.collect();
     if each.is_empty() { String::new() } else { format!("uses {}", each.join(", ")) }
 }
@@ -90,10 +105,6 @@ pub(super) fn path(motion: &SampledMotion, beside: &SampledMotion, tool: &str) -
 
 fn millimetres(m: f64) -> f64 {
     (1e4 * m).round() / 10.0
-}
-
-fn degrees(values_rad: &[f64]) -> Vec<f64> {
-    values_rad.iter().map(|v| hundredths(degrees_from_radians(*v))).collect()
 }
 
 fn shown(values: &[f64]) -> Vec<f64> {

@@ -59,7 +59,7 @@ pub(super) fn nearest(evaluation: &PlanEvaluation) -> Vec<&Margin> {
 /// `J3 speed`, `pump flow`.
 pub(super) fn subject(margin: &Margin, joints: &[String]) -> String {
     match margin.joint.and_then(|joint| joints.get(joint)) {
-        Some(joint) => format!("{joint} {}", margin.limit.name()),
+        Some(joint) => format!("{joint} {}", margin.limit.name_of(margin.kind)),
         None => margin.limit.name().to_owned(),
     }
 }

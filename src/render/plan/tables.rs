@@ -8,6 +8,7 @@ use super::{
 use crate::{
     plan::{BEYOND, HORIZON, Limit, Margin, NoShape, PlanEvaluation, Rule},
     render::kit::{Document, Id, NONE, Section, Sentence, Table, counted},
+    series::JointKind,
     task::{Ceilings, Objective, Weights},
     units::degrees_from_radians,
     workflow::plan::{Options, Planned, Shaped},
@@ -207,6 +208,9 @@ fn near(near_s: Option<f64>, planned: &Planned) -> Option<Section> {
     })
 }
 
+/// What the objective of all joints takes a length for.
+const COUNTED_AS: &str = "In the RMS jerk of all joints 1 m counts as 1 rad: 1 mm/s3 as 0.0573 deg/s3.";
+
 /// Without the zeros that a fixed number of decimals leaves.
 fn trimmed(text: &str) -> String {
     match text.split_once(' ') {
@@ -227,13 +231,17 @@ fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
         none if none == NONE => format!("no limit on {}", limit.name()),
         percent => format!("{} {percent} %", limit.name()),
     };
+    let slides = evaluation.joint_kinds.contains(&JointKind::Slides);
     let rows = joints.iter().enumerate().map(|(j, joint)| {
         let of = |values: &[f64]| values.get(j).copied().unwrap_or(f64::NAN);
-        let mut row = vec![
-            joint.clone(),
-            format!("{:.4}", degrees_from_radians(of(&evaluation.rms_jerk_rad_s3))),
-            format!("{:.2}", of(&evaluation.rms_power_w)),
-        ];
+        let jerk = of(&evaluation.rms_jerk_rad_s3);
+        let slides_here = evaluation.joint_kinds.get(j) == Some(&JointKind::Slides);
+        let jerk = match (slides, slides_here) {
+            (false, _) => format!("{:.4}", degrees_from_radians(jerk)),
+            (true, false) => format!("{:.4} deg/s3", degrees_from_radians(jerk)),
+            (true, true) => format!("{:.3} mm/s3", 1e3 * jerk),
+        };
+        let mut row = vec![joint.clone(), jerk, format!("{:.2}", of(&evaluation.rms_power_w))];
         row.extend(Limit::OF_JOINT.map(|limit| share(limit, Some(j))));
         row
     });
@@ -243,17 +251,17 @@ fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
     let listed = nearest.into_iter().map(|margin| {
         vec![
             subject(margin, joints),
-            shown(margin.limit, margin.value),
+            shown(margin.limit, margin.kind, margin.value),
             allowed(margin),
             percent(margin.share),
             format!("{:.2}", margin.t_s),
         ]
     });
-    let numbers = [
-        "RMS jerk deg/s3", "RMS power W", "range", "speed", "acceleration", "jerk", "torque", "rod speed",
-        "rod force",
-    ];
+    let jerk = if slides { "RMS jerk" } else { "RMS jerk deg/s3" };
+    let numbers =
+        [jerk, "RMS power W", "range", "speed", "acceleration", "jerk", "torque", "rod speed", "rod force"];
     let all = format!("All together: {}, {}.", together(Limit::PumpFlow), together(Limit::ToolSpeed));
+    let together = slides.then(|| Sentence::note(COUNTED_AS));
     let position = listed_position
         .then(|| Sentence::note("For a position, 0 % is the middle of its range and 100 % its end."));
     [
@@ -262,7 +270,8 @@ fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
             "Jerk, power, and percent of each limit used",
             [Table::new(&["joint"], &numbers, rows)],
         )
-        .with(Sentence::finding(all)),
+        .with(Sentence::finding(all))
+        .with_all(together),
         Section::new(
             Id::OTHER,
             "Nearest limits",
@@ -276,7 +285,7 @@ fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
 /// The limits that a plan comes nearest to, a line each.
 pub(super) fn nearest_lines(evaluation: &PlanEvaluation, joints: &[String]) -> Vec<String> {
     let line = |margin: &&Margin| {
-        let value = shown(margin.limit, margin.value);
+        let value = shown(margin.limit, margin.kind, margin.value);
         format!(
             "{} {value} at {:.2} s, limit {}: {} % used",
             subject(margin, joints),
@@ -290,7 +299,7 @@ pub(super) fn nearest_lines(evaluation: &PlanEvaluation, joints: &[String]) -> V
 
 /// What is allowed; of a range the end that is nearer, and on which side of it.
 fn allowed(margin: &Margin) -> String {
-    let most = shown(margin.limit, margin.allowed);
+    let most = shown(margin.limit, margin.kind, margin.allowed);
     let kept = margin.broken() != (margin.value <= margin.allowed);
     match (margin.limit, kept) {
         (Limit::Position, true) => format!("<= {most}"),
@@ -305,9 +314,9 @@ pub(crate) fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEval
         format!(
             "{} is {} at {:.2} s, {} is allowed: {} % above it",
             subject(margin, joints),
-            shown(margin.limit, margin.value),
+            shown(margin.limit, margin.kind, margin.value),
             margin.t_s,
-            shown(margin.limit, margin.allowed),
+            shown(margin.limit, margin.kind, margin.allowed),
             percent(margin.share - 1.0)
         )
     });

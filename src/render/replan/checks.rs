@@ -242,10 +242,10 @@ fn limits([broken, between]: [usize; 2], nearest: &[MarginEntry]) -> String {
         Limit::Position => ("of the way from the middle of its range", [worst.value, worst.allowed]),
         _ => ("used", [worst.value, worst.allowed].map(f64::abs)),
     };
-    let [value, allowed] = [value, allowed].map(|value| plan::shown(worst.limit, value));
+    let [value, allowed] = [value, allowed].map(|value| plan::shown(worst.limit, worst.kind, value));
     let worst = format!(
         "{joint}{}: {} {by}, {value} of {allowed} at {:.1} s",
-        worst.limit.name(),
+        worst.limit.name_of(worst.kind),
         share(worst.share),
         worst.t_s
     );

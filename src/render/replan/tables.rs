@@ -4,13 +4,12 @@ use super::{checks, learning};
 use crate::{
     log::Topics,
     render::{
-        kit::{Block, Document, Fact, Id, NONE, Section, Sentence, Table, fact, optional, some_of},
-        metric::{lengths_as_angles, number, position, unit},
+        kit::{Block, Column, Document, Fact, Id, NONE, Section, Sentence, Table, fact, optional, some_of},
+        metric::{Units, lengths_as_angles, number, position, unit},
     },
     replay::Dimension,
     series::{JointKind, Track},
     task::Objective,
-    units::degrees_from_radians,
     workflow::replan::{Checks, Commanded, HeldTo, Origin, Predicted, Replanned},
 };
 
@@ -46,8 +45,13 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
     document.sections.extend(learning::runs(replanned));
     document.sections.extend(learning::command(replanned));
     if let Some(search) = &replanned.search {
-        let numbers = ["speed deg/s", "from", "acceleration deg/s2", "from"];
-        let held = Table::new(&["joint"], &numbers, search.held.iter().map(held_row));
+        let units = Units::of(search.held.iter().map(|held| held.kind));
+        let number = |(name, dimension)| Column::numbers(units.heading(name, dimension));
+        let [speed, acceleration] =
+            [("speed", Dimension::Speed), ("acceleration", Dimension::Acceleration)].map(number);
+        let columns =
+            [Column::words("joint"), speed, Column::numbers("from"), acceleration, Column::numbers("from")];
+        let held = Table::of(columns, search.held.iter().map(|held| held_row(held, units)));
         document.sections.push(Section::new(Id::OTHER, "Limits of the new plan", [held]));
     }
     document.remarked(&replanned.remarks)
@@ -154,19 +158,20 @@ pub(super) fn levers(replanned: &Replanned) -> Vec<Fact> {
     vec![fact("plan", plan), fact("command", command), fact("send", send)]
 }
 
-fn held_row(held: &HeldTo) -> Vec<String> {
+fn held_row(held: &HeldTo, units: Units) -> Vec<String> {
     let by = |origin: Origin| match origin {
         Origin::Task => "the task",
         Origin::Fitted => "the fit",
         Origin::Shown => "values reached",
     };
-    let number =
-        |rad: f64| if rad.is_finite() { format!("{:.1}", degrees_from_radians(rad)) } else { NONE.into() };
+    let number = |dimension: Dimension, value: f64| {
+        if value.is_finite() { units.cell(dimension, held.kind, value) } else { NONE.into() }
+    };
     vec![
         held.joint.clone(),
-        number(held.speed_rad_s),
+        number(Dimension::Speed, held.speed_rad_s),
         by(held.speed_origin).into(),
-        number(held.acceleration_rad_s2),
+        number(Dimension::Acceleration, held.acceleration_rad_s2),
         by(held.acceleration_origin).into(),
     ]
 }

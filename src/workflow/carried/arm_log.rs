@@ -15,7 +15,7 @@ pub const RATE_HZ: i64 = 50;
 struct Step {
     parent: String,
     child: String,
-    turns: bool,
+    moves: bool,
 }
 
 /// Writes an arm beside the samples of its joints.
@@ -111,21 +111,21 @@ impl<'a> ArmLog<'a> {
 const PERIOD_NS: i64 = 1_000_000_000 / RATE_HZ;
 
 fn steps(chain: &Chain, prefix: &str) -> Vec<Step> {
-    let links: Vec<(&str, bool)> = chain.link_names().zip(chain.link_turns()).collect();
+    let links: Vec<(&str, bool)> = chain.link_names().zip(chain.link_moves()).collect();
     let pairs = links.iter().zip(links.iter().skip(1));
     pairs
-        .map(|((parent, _), (child, turns))| Step {
+        .map(|((parent, _), (child, moves))| Step {
             parent: format!("{prefix}{parent}"),
             child: format!("{prefix}{child}"),
-            turns: *turns,
+            moves: *moves,
         })
         .collect()
 }
 
 /// Transforms of the links that turn, or of those that do not, from the poses of all links.
-fn placed<'s>(steps: &'s [Step], poses: &'s [Pose], turns: bool) -> impl Iterator<Item = Transform<'s>> {
+fn placed<'s>(steps: &'s [Step], poses: &'s [Pose], moves: bool) -> impl Iterator<Item = Transform<'s>> {
     let pairs = poses.iter().zip(poses.iter().skip(1));
-    let kind = steps.iter().zip(pairs).filter(move |(step, _)| step.turns == turns);
+    let kind = steps.iter().zip(pairs).filter(move |(step, _)| step.moves == moves);
     kind.map(|(step, (before, after))| transform(&step.parent, &step.child, &before.inv_mul(after)))
 }
 

@@ -21,7 +21,7 @@ pub use worth::worth;
 
 use super::plan::{PlanDocument, PlanEntry, PlanFailure, TaskFiles};
 use crate::{
-    arm::Arm,
+    arm::{Arm, Chain},
     fit::is_excitation,
     input_file,
     log::{Attachment, JOINT_KINDS, LogWriter, Recording, WriteError, joint_kinds},
@@ -90,6 +90,12 @@ impl Carried {
     #[must_use]
     pub fn with_kinds_of<'a>(self, tracks: impl Iterator<Item = &'a Track>) -> Self {
         Self { kinds: joint_kinds(tracks.map(|track| (track.name(), track.kind()))), ..self }
+    }
+
+    /// The same of the joints of an arm.
+    #[must_use]
+    pub fn with_kinds_of_arm(self, arm: &Chain) -> Self {
+        Self { kinds: joint_kinds(arm.joints().iter().map(|joint| (&*joint.name, joint.kind))), ..self }
     }
 
     /// Where the plan of a log is broken, unless the log holds its task, which tells the plan exactly.

@@ -80,8 +80,10 @@ impl PlanLog<'_> {
         let options = WriteOptions { topics: Topics { trajectory, ..ours }, ..WriteOptions::default() };
         let mut log = LogWriter::new(Vec::new(), &names, options)?;
         let mut carried = self.carried.clone();
-        if let Planned::Series(series) = self.plan {
-            carried = carried.with_kinds_of(series.tracks.iter());
+        match (self.plan, self.arm) {
+            (Planned::Series(series), _) => carried = carried.with_kinds_of(series.tracks.iter()),
+            (Planned::Motion(..), Some(chain)) => carried = carried.with_kinds_of_arm(chain),
+            (Planned::Motion(..), None) => {}
         }
         carried.begin(&mut log)?;
         let mut arm = match self.arm {

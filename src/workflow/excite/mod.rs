@@ -72,8 +72,8 @@ pub struct Excited {
     pub command: Series,
     /// The task whose arm is driven.
     pub task: Option<TaskFiles>,
-    /// Joints that are sent faster than the task allows: what is sent, and what is allowed, rad/s.
-    pub beyond: Vec<(String, [f64; 2])>,
+    /// Joints that are sent faster than the task allows: what is sent, and what is allowed, rad/s or m/s.
+    pub beyond: Vec<(String, JointKind, [f64; 2])>,
 }
 
 /// Writes the run.
@@ -104,11 +104,12 @@ fn fastest_rad_s(track: &Track) -> f64 {
 }
 
 /// Joints that are sent faster than their limits of speed.
-fn beyond(setup: &Setup, command: &Series) -> Vec<(String, [f64; 2])> {
+fn beyond(setup: &Setup, command: &Series) -> Vec<(String, JointKind, [f64; 2])> {
     let sent = |(j, name): (usize, String)| {
         let (_, [most_rad_s, ..]) = setup.joint_limits(j)?;
-        let fastest_rad_s = fastest_rad_s(command.track(&name)?);
-        (fastest_rad_s > most_rad_s).then_some((name, [fastest_rad_s, most_rad_s]))
+        let track = command.track(&name)?;
+        let fastest_rad_s = fastest_rad_s(track);
+        (fastest_rad_s > most_rad_s).then_some((name, track.kind(), [fastest_rad_s, most_rad_s]))
     };
     setup.joint_names().into_iter().enumerate().filter_map(sent).collect()
 }
@@ -116,12 +117,12 @@ fn beyond(setup: &Setup, command: &Series) -> Vec<(String, [f64; 2])> {
 /// Every joint about the middle of what its key points ask for, within its range.
 fn rooms(setup: &Setup) -> Vec<JointRoom> {
     let points = setup.template().points();
-    let of_joint = |(j, name): (usize, String)| {
-        let angles = (0..points.len()).map(|point| points.of(point)[j]);
-        let [least, most] = range(angles);
-        JointRoom::turning(name, 0.5 * (least + most), setup.range_rad(j))
+    let of_joint = |(j, (name, kind)): (usize, (String, JointKind))| {
+        let [least, most] = range((0..points.len()).map(|point| points.of(point)[j]));
+        let (home_rad, range_rad) = (0.5 * (least + most), setup.range_rad(j));
+        JointRoom { name, kind, home_rad, range_rad, most_rad_s: f64::INFINITY }
     };
-    setup.joint_names().into_iter().enumerate().map(of_joint).collect()
+    setup.joint_names().into_iter().zip(setup.joint_kinds()).enumerate().map(of_joint).collect()
 }
 
 impl Excited {

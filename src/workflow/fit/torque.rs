@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    arm::Arm,
+    arm::{Arm, Drive},
     log::{Recording, SignalRole},
     math::{median, quantile},
     series::{Signal, Track},
@@ -51,6 +51,8 @@ fn torque(
 ) -> Option<JointTorque> {
     let joint = arm.chain.joints().iter().position(|joint| joint.name == measured.name())?;
     let cylinder = (*arm.hydraulics.cylinders().get(joint)?)?;
+    // What is told is a torque.
+    matches!(cylinder.drive(), Drive::Turns(_)).then_some(())?;
     let (push_m2, pull_m2) = (cylinder.push_area_m2(), cylinder.pull_area_m2());
     let supply_pa = supply.map(|signal| median(signal.values().to_vec()));
     let mut made = [Vec::new(), Vec::new()];

@@ -9,12 +9,13 @@ use crate::{
     document::{PROGRAM, pretty, unbounded},
     plan::{Limit, Margin, PlanEvaluation, Rule, Via},
     remark::Remark,
+    series::JointKind,
     task::{Objective, Objectives},
 };
 
 const FORMAT: &str = "hydrotrace.plan.v1";
 
-/// Plans of a task. Angles are radians, times seconds, f1 is the duration, f2 the root mean square
+/// Plans of a task. Angles are radians, positions of joints that slide metres, times seconds, f1 is the duration, f2 the root mean square
 /// jerk and f3 the root mean square power, both summed over joints.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -29,6 +30,9 @@ pub struct PlanDocument {
     /// Names of the joints, base first.
     #[serde(default)]
     pub joints: Vec<String>,
+    /// Those of them that slide: of these read m for rad, N for N m; left out where all turn.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sliding_joints: Vec<String>,
     /// Whether a plan keeps all limits and ceilings; if not, the exit code is 1.
     #[serde(default)]
     pub feasible: bool,
@@ -126,7 +130,7 @@ pub struct ChosenPlan {
     /// The plan of the same rule by times alone; left out where the shape is not free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub timing_alone: Option<PlanEntry>,
-    /// Root mean square jerk by joint, rad/s³.
+    /// Root mean square jerk by joint, rad/s³; m/s³ of a joint that slides.
     #[serde(default)]
     pub joint_rms_jerk_rad_s3: Vec<f64>,
     /// Root mean square power by joint, W.
@@ -148,7 +152,10 @@ pub struct MarginEntry {
     pub limit: Limit,
     /// The joint; null for a limit of the arm as a whole.
     pub joint: Option<String>,
-    /// Its value there: rad, rad/s, rad/s², rad/s³, N m, m/s, N or m³/s; null where it has no bound.
+    /// How the joint moves; left out if it turns, or of the arm as a whole.
+    #[serde(default, skip_serializing_if = "JointKind::turns")]
+    pub kind: JointKind,
+    /// Its value there: rad, rad/s, rad/s², rad/s³, N m, m/s, N or m³/s, of a joint that slides m for rad and N for N m; null where it has no bound.
     #[serde(with = "unbounded")]
     #[cfg_attr(test, schemars(with = "Option<f64>"))]
     pub value: f64,
@@ -168,6 +175,7 @@ impl MarginEntry {
         let one = |margin: &Margin| Self {
             limit: margin.limit,
             joint: margin.joint.and_then(|joint| joints.get(joint)).cloned(),
+            kind: margin.kind,
             value: margin.value,
             allowed: margin.allowed,
             share: margin.share,
@@ -199,11 +207,14 @@ impl PlanDocument {
     /// Of one plan that was given, or of the nearest to one of an infeasible task.
     pub fn evaluated(title: &str, joints: &[String], evaluation: &PlanEvaluation, feasible: bool) -> Self {
         let entry = PlanEntry::of(evaluation);
+        let kinds = joints.iter().zip(&evaluation.joint_kinds);
+        let sliding = kinds.filter(|(_, kind)| **kind == JointKind::Slides);
         Self {
             format: FORMAT.to_owned(),
             program: PROGRAM.to_owned(),
             title: title.to_owned(),
             joints: joints.to_vec(),
+            sliding_joints: sliding.map(|(joint, _)| joint.clone()).collect(),
             feasible,
             algorithm: None,
             seeded: None,

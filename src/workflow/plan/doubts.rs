@@ -38,7 +38,7 @@ impl PlanRequest {
                 "through the points of its trajectory, {points_hz:.0} a second, a controller's {curve} comes to {:.0} % of the \
                  largest {}{} at {:.2} s, where the plan keeps it: send it as a stream, or look at what yours interpolates",
                 100.0 * margin.share,
-                margin.limit.name(),
+                margin.limit.name_of(margin.kind),
                 of.unwrap_or_default(),
                 margin.t_s
             );

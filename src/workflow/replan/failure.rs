@@ -8,8 +8,7 @@ use super::Unclear;
 use crate::{
     fit::FitError,
     plan::PlanError,
-    series::{Broken, SignalError},
-    units::Degrees,
+    series::{Broken, JointKind, SignalError},
     workflow::{fit::FitFailure, plan::PlanFailure},
 };
 
@@ -59,11 +58,12 @@ pub enum ReplanFailure {
         "the plan in {} begins {} beside the first key point of the task ({joint}): the arm would jump there; give the task of \
          this plan, or leave out --task",
         path.display(),
-        Degrees(*far)
+        kind.says(*far)
     )]
     OtherStart {
         path: PathBuf,
         joint: String,
+        kind: JointKind,
         /// By how much, rad.
         far: f64,
     },

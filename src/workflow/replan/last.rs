@@ -8,7 +8,7 @@ use crate::{
     plan::{PlanError, PlanEvaluation, Setup, Via},
     series::{Broken, Series, Track, bridged, moving_s},
     spline::Motion,
-    units::{DEGREE_RAD, Degrees},
+    units::DEGREE_RAD,
     workflow::{
         carried::{
             Carried,
@@ -151,7 +151,7 @@ fn rests_s(planned: &Series, [from_s, to_s]: [f64; 2]) -> [f64; 2] {
     [walk(from_s, -CREEP_STEP_S, PLAN_LEAD_S), walk(to_s, CREEP_STEP_S, COMMAND_TAIL_S)]
 }
 
-/// How far a plan passes a key point of its task, rad.
+/// How far a plan passes a key point of its task, rad or m.
 const PASSES_RAD: f64 = 0.5 * DEGREE_RAD;
 
 /// A task that is given must begin where the plan does, or the arm would jump there. Other key points that the plan does
@@ -166,6 +166,7 @@ fn check_points(
     let names = setup.joint_names();
     let tracks: Vec<&Track> = names.iter().filter_map(|name| planned.track(name)).collect();
     let points = setup.template().points();
+    let kind = |joint: usize| setup.joint_kinds().nth(joint).unwrap_or_default();
     // The joint that is farthest from a point at an instant, and how far.
     let apart = |point: usize, t_s: f64| {
         let each =
@@ -174,8 +175,8 @@ fn check_points(
     };
     let (joint, far) = apart(0, from_s - PLAN_LEAD_S);
     if far > PASSES_RAD {
-        let joint = names.get(joint).cloned().unwrap_or_default();
-        return Err(ReplanFailure::OtherStart { path: path.to_owned(), joint, far });
+        let (kind, joint) = (kind(joint), names.get(joint).cloned().unwrap_or_default());
+        return Err(ReplanFailure::OtherStart { path: path.to_owned(), joint, kind, far });
     }
     let instants = || (0..=INSTANTS).map(|k| from_s + (to_s - from_s) * f64::from(k) / f64::from(INSTANTS));
     let nearest = |point: usize| {
@@ -190,7 +191,7 @@ fn check_points(
                  it",
                 path.display(),
                 names.get(joint).map_or("", String::as_str),
-                Degrees(far)
+                kind(joint).says(far)
             )
         })
     });

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     fit::{Estimated, Fit},
     plan::Setup,
+    series::JointKind,
     spline::{Motion, Quantity},
     task::Task,
 };
@@ -28,6 +29,9 @@ pub enum Origin {
 pub struct HeldTo {
     /// The joint.
     pub joint: String,
+    /// How it moves: of one that slides read m for rad; left out if it turns.
+    #[serde(default, skip_serializing_if = "JointKind::turns")]
+    pub kind: JointKind,
     /// Largest speed, rad/s; null for none.
     #[serde(with = "crate::document::unbounded")]
     #[cfg_attr(test, schemars(with = "Option<f64>"))]
@@ -71,6 +75,7 @@ pub(super) fn held(task: &Task, setup: &Setup, fit: &Fit, last: Option<&Motion>)
         (limits.velocity_rad_s, limits.acceleration_rad_s2) = (speed_rad_s, acceleration_rad_s2);
         joints.push(HeldTo {
             joint: name,
+            kind: setup.arm().chain.joints()[j].kind,
             speed_rad_s,
             speed_origin,
             acceleration_rad_s2,

@@ -2,7 +2,7 @@
 
 use crate::{
     plan::Setup,
-    series::{Series, SignalError, Track},
+    series::{JointKind, Series, SignalError, Track},
     spline::{Motion, Quantity, Samples},
     workflow::{
         carried::rest::{COMMAND_TAIL_S, PLAN_LEAD_S},
@@ -18,9 +18,11 @@ pub(super) fn sampled(setup: &Setup, motion: &Motion) -> Result<Series, SignalEr
     let mut samples = Samples::default();
     motion.sample(&local_s, Quantity::Velocity, &mut samples);
     let inside = |(v, t): (&f64, &f64)| if (0.0..=duration_s).contains(t) { *v } else { 0.0 };
-    let one = |(j, name): (usize, String)| {
+    let one = |(j, (name, kind)): (usize, (String, JointKind))| {
         let speed = samples.of(Quantity::Velocity, j).iter().zip(&local_s).map(inside).collect();
-        Track::new(name, t_s.clone(), samples.of(Quantity::Position, j).to_vec(), &[])?.with_velocity(speed)
+        Track::of(kind, &name, t_s.clone(), samples.of(Quantity::Position, j).to_vec(), &[])?
+            .with_velocity(speed)
     };
-    Ok(Series { tracks: setup.joint_names().into_iter().enumerate().map(one).collect::<Result<_, _>>()? })
+    let joints = setup.joint_names().into_iter().zip(setup.joint_kinds()).enumerate();
+    Ok(Series { tracks: joints.map(one).collect::<Result<_, _>>()? })
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use hydrotrace::{
-    arm::{Actuation, ArmError, Cylinder, Hydraulics, Linkage, Rod, Rods},
+    arm::{Actuation, ArmError, Cylinder, Drive, Hydraulics, Linkage, Rod, Rods},
     units::DEGREE_RAD,
 };
 use proptest::prelude::*;
@@ -70,7 +70,7 @@ proptest! {
         let at = |q: f64| cylinder(joint).length_and_lever(q.sin(), q.cos());
         let slope = (at(q + 1e-6).0 - at(q - 1e-6).0) / 2e-6;
         prop_assert!((slope - at(q).1).abs() < 1e-8);
-        let linkage = cylinder(joint).linkage().to_owned();
+        let Drive::Turns(linkage) = *cylinder(joint).drive() else { panic!() };
         let angle = linkage.offset_rad + linkage.sense * q;
         let (a, b) = (linkage.inner_m, linkage.outer_m);
         let length = (a * a + b * b - 2.0 * a * b * angle.cos()).sqrt();
@@ -154,6 +154,50 @@ fn faults_name_joint_key_what_was_found_and_what_is_expected() {
     );
     assert!(fault("mechanical_efficiency", "efficiency").contains("unknown field"));
     assert!(fault("cylinders = 1", "cylinders = 0").contains("1 to 64"));
+}
+
+/// The cylinders of a joint that turns and of one that slides, the second with these keys.
+fn of_both(keys: &str) -> Result<Hydraulics, ArmError> {
+    let text = format!(
+        "supply_pressure_pa = 20e6\nreturn_pressure_pa = 1e6\nmechanical_efficiency = 0.9\npump_flow_m3_s = 1e-3\n\
+         [joint.q2]\nbore_m = 0.08\nrod_m = 0.05\n{keys}\n"
+    );
+    Hydraulics::from_toml(&text, "h.toml", &sliding())
+}
+
+#[test]
+fn a_cylinder_slides_a_joint_directly_or_by_chains() {
+    let found = |travel: f64, speed_m_s: f64, force_n: f64| {
+        let hydraulics = of_both(&format!("rod_per_travel = {travel}")).unwrap();
+        // Whatever the position, so whatever its sine.
+        hydraulics.cylinders()[1].unwrap().actuation((0.6, 0.8), speed_m_s, force_n)
+    };
+    let area_m2 = PI / 4.0 * 0.08 * 0.08;
+    let direct = found(1.0, 0.3, 5e3);
+    assert_eq!((direct.lever_m, direct.rod_speed_m_s, direct.force_n), (1.0, 0.3, 5e3));
+    assert!((direct.flow_m3_s - 0.3 * area_m2).abs() < 1e-15);
+    let chained = found(0.5, 0.3, 5e3);
+    assert_eq!((chained.rod_speed_m_s, chained.force_n), (0.15, 1e4));
+    let turned = found(-1.0, 0.3, 5e3);
+    assert_eq!((turned.rod_speed_m_s, turned.force_n), (-0.3, -5e3));
+    assert!(turned.flow_m3_s < direct.flow_m3_s, "the rod side fills with less");
+}
+
+#[test]
+fn a_cylinder_is_driven_as_its_joint_moves() {
+    let error = |keys: &str| of_both(keys).unwrap_err().to_string();
+    let triangle = "a_m = 1.0\nb_m = 0.5\ndelta_rad = 1.0\nangle_sign = 1";
+    assert_eq!(
+        error(triangle),
+        "h.toml: [joint.q2]: found a_m, b_m, delta_rad, angle_sign, expected rod_per_travel alone, for the joint slides"
+    );
+    assert!(error("").contains("found no key of its drive"));
+    assert!(error("rod_per_travel = 0.0").contains("[joint.q2] rod_per_travel: found 0"));
+    assert!(fault("a_m =", "rod_per_travel = 1.0\na_m =").contains("for the joint turns"));
+    assert!(fault("b_m =", "# b_m =").contains("found a_m, delta_rad, angle_sign, expected a_m, b_m"));
+    // A length of a joint that slides is its position: no angle comes of it.
+    let text = TOML.to_owned() + "\n[joint.telescope]\nbore_m = 0.08\nrod_m = 0.05\nrod_per_travel = 1.0\n";
+    assert_eq!(Rods::from_toml(&text, "h.toml", None).unwrap().joints().count(), 6);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Laws of mechanics, on a chain of skew axes.
+//! Laws of mechanics, on chains of skew axes, about which joints turn or along which they slide.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3, Vector6};
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ proptest! {
 
     #[test]
     fn power_of_the_torques_is_the_growth_of_energy(seed in 0_u64..1 << 40) {
-        let chain = spatial();
+        let chain = skew(seed);
         let n = chain.joint_count();
         let (q, qd, qdd) = (random(seed, n, 3.0), random(seed + 1, n, 2.0), random(seed + 2, n, 4.0));
         let power_w: f64 = torque(&chain, None, &q, &qd, &qdd).iter().zip(&qd).map(|(t, w)| t * w).sum();
@@ -40,7 +40,7 @@ proptest! {
     #[test]
     fn holding_takes_the_slope_of_height_times_weight(seed in 0_u64..1 << 40) {
         // A payload of known height: the only energy that is known without the dynamics.
-        let chain = spatial();
+        let chain = skew(seed);
         let n = chain.joint_count();
         let (q, zero) = (random(seed, n, 3.0), vec![0.0; n]);
         let place_m = Vector3::new(0.2, -0.3, 0.1);
@@ -58,7 +58,7 @@ proptest! {
 
     #[test]
     fn torque_is_linear_in_the_payload(seed in 0_u64..1 << 40, mass_kg in 0.1_f64..50.0) {
-        let chain = spatial();
+        let chain = skew(seed);
         let n = chain.joint_count();
         let (q, qd, qdd) = (random(seed, n, 3.0), random(seed + 1, n, 2.0), random(seed + 2, n, 4.0));
         let body = |scale: f64| {
@@ -74,7 +74,7 @@ proptest! {
 
     #[test]
     fn the_jacobian_is_the_slope_of_the_pose(seed in 0_u64..1 << 40) {
-        let chain = spatial();
+        let chain = skew(seed);
         let n = chain.joint_count();
         let (q, qd) = (random(seed, n, 3.0), random(seed + 1, n, 2.0));
         let h = 1e-6;

@@ -14,6 +14,7 @@ use hydrotrace::{
 use rand_distr::{Distribution, Uniform};
 
 const SPATIAL: &str = include_str!("../../reference/spatial-7.urdf");
+const SLIDING: &str = include_str!("../../reference/sliding-5.urdf");
 const PLATE: &str = include_str!("../../../sample-logs/arm/arm-with-plate.urdf");
 
 fn sample() -> Arm {
@@ -22,6 +23,16 @@ fn sample() -> Arm {
 
 fn spatial() -> Chain {
     Chain::from_urdf(SPATIAL, "spatial-7.urdf", Some("tool")).unwrap()
+}
+
+/// Skew joints of which some slide.
+fn sliding() -> Chain {
+    Chain::from_urdf(SLIDING, "sliding-5.urdf", Some("tool")).unwrap()
+}
+
+/// One of the two.
+fn skew(seed: u64) -> Chain {
+    if seed.is_multiple_of(2) { spatial() } else { sliding() }
 }
 
 /// Torques of one instant.

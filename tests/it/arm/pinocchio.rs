@@ -32,11 +32,12 @@ struct State {
 fn cases() -> Vec<(Chain, Case)> {
     let reference: Reference =
         serde_json::from_str(include_str!("../../reference/arm-pinocchio.json")).unwrap();
-    assert_eq!(reference.arms.len(), 3);
+    assert_eq!(reference.arms.len(), 4);
     let arms = reference.arms.into_iter().map(|(name, case)| {
         let chain = match name.as_str() {
             "arm" => sample().chain,
             "arm-with-plate" => Chain::from_urdf(PLATE, &name, Some("tool")).unwrap(),
+            "sliding-5" => sliding(),
             _ => spatial(),
         };
         assert!(chain.joints().iter().map(|joint| &joint.name).eq(&case.joints));

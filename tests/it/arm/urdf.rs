@@ -41,11 +41,7 @@ fn faults_name_element_found_and_expected() {
         ),
         (r#"name="J2""#, r#"name="J1""#, r#"<joint "J1">: found it twice"#),
         (r#"<link name="tool"/>"#, r#"<link name="base"/>"#, r#"<link "base">: found it twice"#),
-        (
-            r#"type="revolute""#,
-            r#"type="prismatic""#,
-            r#"<joint "J1">: found the type Prismatic, expected rev"#,
-        ),
+        (r#"type="revolute""#, r#"type="planar""#, r#"<joint "J1">: found the type Planar, expected rev"#),
         (r#"xyz="0 1 0"/><limit"#, r#"xyz="0 0 0"/><limit"#, r#"<joint "J1"> <axis>: found [0.0, 0.0, 0.0]"#),
         (r#"lower="0.349066""#, r#"lower="9""#, r#"<joint "J1"> <limit>: found lower 9 and upper 1.658063"#),
         (
@@ -57,13 +53,24 @@ fn faults_name_element_found_and_expected() {
         (r#"xyz="1.2 0 0""#, r#"xyz="inf 0 0""#, r#"<joint "J2"> <origin>: found xyz [inf, 0.0, 0.0]"#),
         (r#"xyz="1.2 0 0""#, r#"xyz="1.2 0""#, "cannot be read"),
         ("</robot>", "", "cannot be read"),
-        (r#"parent link="base""#, r#"parent link="tool""#, "found no turning joint"),
+        (r#"parent link="base""#, r#"parent link="tool""#, "found no joint that moves"),
         (r#"<link name="base"/>"#, r#"<link name="base"/><link name="moon"/>"#, "found 2: base, moon"),
     ];
     for (from, to, expected) in cases {
         let found = fault(from, to);
         assert!(found.starts_with("a.urdf") && found.contains(expected), "{found}\nnot {expected}");
     }
+}
+
+#[test]
+fn a_range_in_millimetres_of_a_joint_that_slides_is_refused() {
+    let (before, after) = SLIDING.split_once(r#"name="q2""#).unwrap();
+    let text = format!(r#"{before}name="q2"{}"#, after.replacen(r#"upper="2.5""#, r#"upper="1200""#, 1));
+    let found = read(&text, None).unwrap_err();
+    assert_eq!(
+        found,
+        r#"a.urdf: <joint "q2"> <limit>: found lower -2.5 and upper 1200, expected metres: millimetres times 0.001"#
+    );
 }
 
 #[test]
@@ -91,7 +98,7 @@ fn several_possible_tools_are_named() {
     assert_eq!(read(SPATIAL, Some("tool")).unwrap().joint_count(), 7);
     assert!(read(SPATIAL, Some("nose")).unwrap_err().contains("tool: found nose"));
     assert!(read(SPATIAL, Some("camera")).unwrap_err().contains("moving joint beside the path"));
-    assert!(read(SPATIAL, Some("base")).unwrap_err().contains("no turning joint"));
+    assert!(read(SPATIAL, Some("base")).unwrap_err().contains("no joint that moves"));
 }
 
 #[test]

@@ -44,6 +44,7 @@ mod sliding;
 mod spared;
 mod spellings;
 mod tables;
+mod telescope;
 mod terminal;
 mod tool;
 mod trajectory;

@@ -1,0 +1,272 @@
+//! Quantities by joint: degrees of joints that turn, millimetres of those that slide. A joint slides if the file says
+//! something of it in millimetres.
+
+use std::{collections::BTreeMap, ops::Range};
+
+use toml::Spanned;
+
+use super::{
+    Boundary, JointLimits, TaskError,
+    document::{Document, End, Limits, Point},
+};
+use crate::{series::JointKind, units::radians_from_degrees};
+
+/// One table of the file.
+type Table<'a, T> = Option<&'a Spanned<BTreeMap<String, T>>>;
+
+/// A quantity: its tables and their keys, of joints that turn and of joints that slide.
+pub(super) struct Given<'a, T> {
+    keys: [String; 2],
+    tables: [Table<'a, T>; 2],
+}
+
+impl<'a, T> Given<'a, T> {
+    fn of(prefix: &str, keys: [&str; 2], turns: Table<'a, T>, slides: Table<'a, T>) -> Self {
+        Self { keys: keys.map(|key| format!("{prefix}{key}")), tables: [turns, slides] }
+    }
+
+    /// The tables that there are, with their keys and the kind of their joints.
+    fn tables(&self) -> impl Iterator<Item = (&str, JointKind, &'a Spanned<BTreeMap<String, T>>)> {
+        let kinds = [JointKind::Turns, JointKind::Slides];
+        self.keys
+            .iter()
+            .zip(kinds)
+            .zip(self.tables)
+            .filter_map(|((key, kind), table)| Some((&**key, kind, table?)))
+    }
+
+    pub(super) fn is_given(&self) -> bool {
+        self.tables.iter().any(Option::is_some)
+    }
+}
+
+/// The positions of a key point.
+pub(super) fn positions(point: &Point) -> Given<'_, f64> {
+    Given::of("", ["angles_deg", "positions_mm"], point.angles_deg.as_ref(), point.positions_mm.as_ref())
+}
+
+fn at_end<'a>(end: &str, given: &'a End) -> [Given<'a, f64>; 3] {
+    let prefix = format!("{end}.");
+    [
+        Given::of(
+            &prefix,
+            ["speed_deg_s", "speed_mm_s"],
+            given.speed_deg_s.as_ref(),
+            given.speed_mm_s.as_ref(),
+        ),
+        Given::of(
+            &prefix,
+            ["acceleration_deg_s2", "acceleration_mm_s2"],
+            given.acceleration_deg_s2.as_ref(),
+            given.acceleration_mm_s2.as_ref(),
+        ),
+        Given::of(
+            &prefix,
+            ["jerk_deg_s3", "jerk_mm_s3"],
+            given.jerk_deg_s3.as_ref(),
+            given.jerk_mm_s3.as_ref(),
+        ),
+    ]
+}
+
+fn of_limits(given: &Limits) -> [Given<'_, f64>; 4] {
+    let of = |keys, turns, slides| Given::of("limits.", keys, turns, slides);
+    [
+        of(["speed_deg_s", "speed_mm_s"], given.speed_deg_s.as_ref(), given.speed_mm_s.as_ref()),
+        of(
+            ["acceleration_deg_s2", "acceleration_mm_s2"],
+            given.acceleration_deg_s2.as_ref(),
+            given.acceleration_mm_s2.as_ref(),
+        ),
+        of(["jerk_deg_s3", "jerk_mm_s3"], given.jerk_deg_s3.as_ref(), given.jerk_mm_s3.as_ref()),
+        of(["torque_n_m", "force_n"], given.torque_n_m.as_ref(), given.force_n.as_ref()),
+    ]
+}
+
+fn ranges(given: &Limits) -> Given<'_, [f64; 2]> {
+    Given::of("limits.", ["range_deg", "range_mm"], given.range_deg.as_ref(), given.range_mm.as_ref())
+}
+
+/// In rad, or in m, and their derivatives.
+fn si(kind: JointKind, shown: f64) -> f64 {
+    match kind {
+        JointKind::Turns => radians_from_degrees(shown),
+        JointKind::Slides => 1e-3 * shown,
+    }
+}
+
+/// The line, from 1, in which a span starts.
+pub(super) fn line_of(text: &str, span: &Range<usize>) -> usize {
+    let start = span.start.min(text.len());
+    1 + memchr::memchr_iter(b'\n', &text.as_bytes()[..start]).count()
+}
+
+/// The joints of a task, and its text.
+#[derive(Clone, Copy)]
+pub(super) struct Joints<'a> {
+    pub(super) text: &'a str,
+    pub(super) names: &'a [String],
+}
+
+impl Joints<'_> {
+    fn declared(&self) -> String {
+        self.names.join(", ")
+    }
+
+    /// How the joints move, in their order; `None` of those that the file says nothing of.
+    ///
+    /// # Errors
+    ///
+    /// [`TaskError`] for a joint that both turns and slides.
+    pub(super) fn kinds(&self, file: &Document) -> Result<Vec<Option<JointKind>>, TaskError> {
+        let mut known: BTreeMap<&String, (JointKind, usize)> = BTreeMap::new();
+        let ends = [("start", &file.start), ("end", &file.end)];
+        let ends = ends.into_iter().filter_map(|(name, end)| Some(at_end(name, end.as_ref()?)));
+        let numbers = file.points.iter().map(|point| positions(point.get_ref()));
+        let numbers: Vec<Given<'_, f64>> =
+            numbers.chain(ends.flatten()).chain(of_limits(&file.limits)).collect();
+        let ranges = ranges(&file.limits);
+        let named = numbers.iter().flat_map(|given| {
+            given
+                .tables()
+                .map(|(key, kind, table)| (key, kind, table.span(), table.get_ref().keys().collect()))
+        });
+        let ranged = ranges
+            .tables()
+            .map(|(key, kind, table)| (key, kind, table.span(), table.get_ref().keys().collect::<Vec<_>>()));
+        for (key, kind, span, joints) in named.chain(ranged) {
+            let line = line_of(self.text, &span);
+            for joint in joints {
+                let (first, said) = *known.entry(joint).or_insert((kind, line));
+                if first != kind {
+                    return Err(TaskError::TwoKinds {
+                        line,
+                        key: key.to_owned(),
+                        joint: joint.clone(),
+                        said,
+                    });
+                }
+            }
+        }
+        Ok(self.names.iter().map(|name| known.get(name).map(|(kind, _)| *kind)).collect())
+    }
+
+    /// Values as the file has them, with how the joints move, in the order of the joints; `otherwise` for those left out, an
+    /// error if it is none.
+    fn by_joint<T: Copy>(
+        &self,
+        given: &Given<'_, T>,
+        otherwise: Option<T>,
+    ) -> Result<Vec<(T, JointKind)>, TaskError> {
+        for (key, _, table) in given.tables() {
+            if let Some(joint) = table.get_ref().keys().find(|name| !self.names.contains(name)) {
+                let (line, key, joint) = (line_of(self.text, &table.span()), key.to_owned(), joint.clone());
+                return Err(TaskError::UnknownJoint { line, key, joint, declared: self.declared() });
+            }
+        }
+        let of = |joint: &String| {
+            let own = given.tables().find_map(|(_, kind, table)| Some((*table.get_ref().get(joint)?, kind)));
+            own.or_else(|| Some((otherwise?, JointKind::Turns))).ok_or_else(|| TaskError::MissingJoint {
+                line: self.line(given),
+                key: given.tables().next().map_or_else(String::new, |(key, ..)| key.to_owned()),
+                joint: joint.clone(),
+                declared: self.declared(),
+            })
+        };
+        self.names.iter().map(of).collect()
+    }
+
+    fn line<T>(&self, given: &Given<'_, T>) -> usize {
+        given.tables().next().map_or(1, |(_, _, table)| line_of(self.text, &table.span()))
+    }
+
+    /// The error of a value in one of the tables.
+    fn wrong<T>(
+        &self,
+        given: &Given<'_, T>,
+        kind: JointKind,
+        found: String,
+        expected: &'static str,
+    ) -> TaskError {
+        let own = given.tables().find(|(_, own, _)| *own == kind).or_else(|| given.tables().next());
+        let (key, line) = own.map_or((String::new(), 1), |(key, _, table)| {
+            (key.to_owned(), line_of(self.text, &table.span()))
+        });
+        TaskError::Value { line, key, found, expected }
+    }
+
+    /// As [`Self::by_joint`], finite, in rad or m.
+    pub(super) fn values(
+        &self,
+        given: &Given<'_, f64>,
+        otherwise: Option<f64>,
+    ) -> Result<Vec<f64>, TaskError> {
+        let values = self.by_joint(given, otherwise)?;
+        match values.iter().find(|(value, _)| !value.is_finite()) {
+            Some((value, kind)) => {
+                Err(self.wrong(given, *kind, value.to_string(), "finite numbers are expected"))
+            }
+            None => Ok(values.into_iter().map(|(value, kind)| si(kind, value)).collect()),
+        }
+    }
+
+    pub(super) fn boundary(&self, end: &str, given: Option<&End>) -> Result<Boundary, TaskError> {
+        let Some(given) = given else {
+            let rest = vec![0.0; self.names.len()];
+            return Ok(Boundary {
+                velocity_rad_s: rest.clone(),
+                acceleration_rad_s2: rest.clone(),
+                jerk_rad_s3: rest,
+            });
+        };
+        let [speed, acceleration, jerk] = at_end(end, given);
+        Ok(Boundary {
+            velocity_rad_s: self.values(&speed, Some(0.0))?,
+            acceleration_rad_s2: self.values(&acceleration, Some(0.0))?,
+            jerk_rad_s3: self.values(&jerk, Some(0.0))?,
+        })
+    }
+
+    fn above_zero(&self, given: &Given<'_, f64>) -> Result<Vec<(f64, JointKind)>, TaskError> {
+        let found = self.by_joint(given, Some(f64::INFINITY))?;
+        match found.iter().find(|(value, _)| value.is_nan() || *value <= 0.0) {
+            Some((value, kind)) => {
+                Err(self.wrong(given, *kind, value.to_string(), "limits above zero are expected"))
+            }
+            None => Ok(found),
+        }
+    }
+
+    pub(super) fn limits(&self, limits: &Limits) -> Result<Vec<JointLimits>, TaskError> {
+        let ranges = ranges(limits);
+        let found = self.by_joint(&ranges, Some([f64::NEG_INFINITY, f64::INFINITY]))?;
+        let upside_down = |[low, high]: [f64; 2]| low >= high || low.is_nan() || high.is_nan();
+        if let Some(([low, high], kind)) = found.iter().find(|(range, _)| upside_down(*range)) {
+            let expected = "the lowest is expected first";
+            return Err(self.wrong(&ranges, *kind, format!("[{low}, {high}]"), expected));
+        }
+        let range = |(range, kind): ([f64; 2], JointKind)| {
+            range[0].max(-range[1]).is_finite().then(|| range.map(|end| si(kind, end)))
+        };
+        let [speed, acceleration, jerk, effort] = of_limits(limits);
+        let rate = |given: &Given<'_, f64>| -> Result<Vec<f64>, TaskError> {
+            Ok(self.above_zero(given)?.into_iter().map(|(value, kind)| si(kind, value)).collect())
+        };
+        let (speed, acceleration, jerk) = (rate(&speed)?, rate(&acceleration)?, rate(&jerk)?);
+        let effort = self.above_zero(&effort)?;
+        let rod = Given {
+            keys: ["limits.rod_speed_m_s"; 2].map(str::to_owned),
+            tables: [limits.rod_speed_m_s.as_ref(), None],
+        };
+        let rod_speed = self.above_zero(&rod)?;
+        let joints = found.into_iter().enumerate().map(|(j, found)| JointLimits {
+            range_rad: range(found),
+            velocity_rad_s: speed[j],
+            acceleration_rad_s2: acceleration[j],
+            jerk_rad_s3: jerk[j],
+            torque_n_m: effort[j].0,
+            rod_speed_m_s: rod_speed[j].0,
+        });
+        Ok(joints.collect())
+    }
+}
