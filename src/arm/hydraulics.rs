@@ -143,6 +143,10 @@ impl Document {
         let range_rad = range_rad.unwrap_or((middle_rad, middle_rad));
         let unexpected =
             |key, found, expected| at.unexpected(format!("[joint.{joint}] {key}"), found, expected);
+        if matches!(drive, Drive::Slides(_)) && entry.sensor_zero_m != 0.0 {
+            let expected = "none of a joint that slides: its rod counts from where the joint is at zero";
+            return Err(unexpected("sensor_zero_m", entry.sensor_zero_m.to_string(), expected));
+        }
         if !(-1e3..1e3).contains(&entry.sensor_zero_m) {
             return Err(unexpected("sensor_zero_m", entry.sensor_zero_m.to_string(), "a length, m"));
         }

@@ -39,7 +39,11 @@ impl Rod {
 
 /// Cylinders by the name of their joint.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rods(BTreeMap<String, Rod>);
+pub struct Rods {
+    turning: BTreeMap<String, Rod>,
+    /// Travel of the rod by that of a joint that slides.
+    sliding: BTreeMap<String, f64>,
+}
 
 impl Rods {
     /// Reads a file of cylinders, as [`Hydraulics::from_toml`](super::Hydraulics::from_toml), of any joints; `urdf` gives
@@ -53,31 +57,40 @@ impl Rods {
         let at = Witness(file);
         let document = Document::read(text, &at)?;
         let ranges = urdf.map(turning_ranges).unwrap_or_default();
-        let rod = |(joint, entry): (&String, _)| {
+        let (mut turning, mut sliding) = (BTreeMap::new(), BTreeMap::new());
+        for (joint, entry) in &document.joint {
             let range_rad = ranges.get(joint).copied();
-            let cylinder = document.cylinder(joint, entry, (None, range_rad), &at)?;
-            // The length of one that slides is a position as it is.
-            let Drive::Turns(linkage) = *cylinder.drive() else { return Ok(None) };
-            Ok(Some((joint.clone(), Rod { linkage, zero_m: entry.sensor_zero_m, range_rad })))
-        };
-        let all = document.joint.iter().map(rod).collect::<Result<Vec<_>, ArmError>>()?;
-        Ok(Self(all.into_iter().flatten().collect()))
+            match *document.cylinder(joint, entry, (None, range_rad), &at)?.drive() {
+                Drive::Turns(linkage) => {
+                    turning.insert(joint.clone(), Rod { linkage, zero_m: entry.sensor_zero_m, range_rad });
+                }
+                Drive::Slides(rod_per_travel) => {
+                    sliding.insert(joint.clone(), rod_per_travel);
+                }
+            }
+        }
+        Ok(Self { turning, sliding })
     }
 
-    /// The cylinder of a joint.
+    /// The cylinder of a joint that turns.
     pub fn of(&self, joint: &str) -> Option<&Rod> {
-        self.0.get(joint)
+        self.turning.get(joint)
+    }
+
+    /// Travel of the rod of a joint that slides by that of the joint.
+    pub fn rod_per_travel(&self, joint: &str) -> Option<f64> {
+        self.sliding.get(joint).copied()
     }
 
     /// The joints.
     pub fn joints(&self) -> impl Iterator<Item = &str> {
-        self.0.keys().map(String::as_str)
+        self.turning.keys().chain(self.sliding.keys()).map(String::as_str)
     }
 
     /// The joint that a name in a log means: its own, else the only one of the same words but `joint` and those of
     /// cylinders, whatever their case.
     pub fn meant(&self, name: &str) -> Option<&str> {
-        if let Some((joint, _)) = self.0.get_key_value(name) {
+        if let Some(joint) = self.joints().find(|joint| *joint == name) {
             return Some(joint);
         }
         let own = key(name);

@@ -22,8 +22,8 @@ const LARGEST_TEXT: usize = 4 << 20;
 const DEEPEST: usize = 32;
 /// Joints of one file, fixed ones included.
 const MOST_JOINTS: usize = 4096;
-/// A limit beyond is in millimetres, m.
-const LONGEST_M: f64 = 100.0;
+/// A limit beyond is in millimetres, m: no crane's rails are so long.
+const LONGEST_M: f64 = 1000.0;
 /// A limit between the two is in degrees, rad: of five to a hundred turns, and beyond are joints without stops.
 const IN_DEGREES_RAD: [f64; 2] = [30.0, 720.0];
 
@@ -285,7 +285,8 @@ impl<'a> Tree<'a> {
         };
         if let Some(mimic) = &joint.mimic {
             let found = format!("<mimic> of {:?}", mimic.joint);
-            return Err(self.at.unexpected(element, found, "joints that move on their own"));
+            let expected = "joints that move on their own: make one that follows another fixed, and let the other move as far as both";
+            return Err(self.at.unexpected(element, found, expected));
         }
         if lower_rad.is_nan() || upper_rad.is_nan() || lower_rad >= upper_rad {
             let found = format!("lower {lower_rad} and upper {upper_rad}");

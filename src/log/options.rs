@@ -135,7 +135,8 @@ impl ReadOptions {
     /// [`CsvError::MapFile`].
     pub(super) fn columns(&self) -> Result<CsvOptions, CsvError> {
         let of_map = self.map.as_deref().map(CsvOptions::from_map).transpose()?.unwrap_or_default();
-        Ok(CsvOptions { as_plan: self.sides == Sides::Plan, ..of_map })
+        let slides_if_unsaid = self.slides.clone();
+        Ok(CsvOptions { as_plan: self.sides == Sides::Plan, slides_if_unsaid, ..of_map })
     }
 
     /// With signals that are read if they are where our own logs have them; one that the caller named stays.

@@ -17,7 +17,7 @@ const SAME_POSE: f64 = 1e-6;
 pub struct Via {
     /// When the arm passes it, s.
     pub t_s: f64,
-    /// Angles of the joints, base first, rad.
+    /// Positions of the joints, base first, rad, of those that slide m.
     pub position_rad: Vec<f64>,
 }
 

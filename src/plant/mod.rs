@@ -56,7 +56,10 @@ pub use simulate::simulate;
 pub use truth::{JointTruth, Truth};
 pub use variation::Variation;
 
-use crate::arm::{Arm, Chain, Cylinder, Drive, Joint};
+use crate::{
+    arm::{Arm, Chain, Cylinder, Drive, Joint},
+    series::JointKind,
+};
 use cylinder::Size;
 
 /// Step of the simulation, s.
@@ -92,6 +95,9 @@ impl Plant {
     pub fn new(arm: &Arm, parameters: Parameters) -> Result<Self, PlantError> {
         quantity::check(&parameters).map_err(|flaw| flaw.at(None))?;
         let joints = arm.chain.joints();
+        if let Some(joint) = joints.iter().find(|joint| joint.kind == JointKind::Slides) {
+            return Err(PlantError::Slides { joint: joint.name.clone() });
+        }
         if !joints.iter().map(|joint| &joint.name).eq(parameters.joints.iter().map(|joint| &joint.name)) {
             let plant: Vec<&str> = parameters.joints.iter().map(|joint| joint.name.as_str()).collect();
             let arm: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();

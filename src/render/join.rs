@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use super::{
-    kit::{Block, Document, Id, Section, Sentence, counted, deg, fact},
+    kit::{Block, Document, Id, Section, Sentence, counted, fact},
+    metric::{lengths_as_angles, position},
     next,
 };
-use crate::workflow::join::Joined;
+use crate::{series::JointKind, workflow::join::Joined};
 
 /// As sentences.
 pub(crate) fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {
@@ -16,9 +17,11 @@ pub(crate) fn document(joined: &Joined, plan: &Path, output: &Path) -> Document 
     let what = if *sent_is_command { "command" } else { "plan" };
     let sent = match (sent, located) {
         (Some(topic), Some(found)) => format!(
-            "{topic}: the {what} of {plan} from {at_s:.3} s on, {} deg rms apart on {}",
-            deg(found.rms_rad),
-            counted(found.joints, "joint")
+            "{topic}: the {what} of {plan} from {at_s:.3} s on, {} rms apart on {}{}",
+            position(JointKind::common(joined.kinds.iter().copied()), found.rms_rad),
+            counted(found.joints, "joint"),
+            lengths_as_angles(joined.kinds.iter().copied())
+                .map_or(String::new(), |counts| format!(" ({counts})"))
         ),
         _ => format!("the {what} of {plan} from {at_s:.3} s on, as given"),
     };

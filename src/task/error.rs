@@ -23,10 +23,10 @@ pub enum TaskError {
     MissingJoint { line: usize, key: String, joint: String, declared: String },
     /// A joint given in degrees and in millimetres.
     #[error(
-        "line {line}: {key} names the joint {joint:?}, which line {said} has in the other unit; degrees are for a joint that \
-         turns, millimetres for one that slides"
+        "line {line}: {key} names the joint {joint:?}, which line {said} has under {other}; degrees are for a joint that turns, \
+         millimetres for one that slides"
     )]
-    TwoKinds { line: usize, key: String, joint: String, said: usize },
+    TwoKinds { line: usize, key: String, joint: String, said: usize, other: String },
     /// A list of the wrong length.
     #[error("line {line}: {key} has {found} values, {expected} are needed ({why})")]
     Length { line: usize, key: String, found: usize, expected: usize, why: &'static str },

@@ -42,10 +42,11 @@ fn parse(text: &str) -> Result<Task, TaskError> {
         line: line_of(text, &error.span().unwrap_or(0..0)),
         message: syntax(error.message()),
     })?;
-    let joints = Joints { text, names: file.joints.get_ref() };
+    let names = file.joints.get_ref();
+    check_joints(text, &file.joints)?;
+    let kinds = Joints { text, names, kinds: &[] }.kinds(&file)?;
+    let joints = Joints { text, names, kinds: &kinds };
     let reader = Reader { text, joints };
-    reader.joints(&file.joints)?;
-    let kinds = joints.kinds(&file)?;
     let degree = match &file.degree {
         None => 6,
         Some(degree) if (5..=7).contains(degree.get_ref()) => *degree.get_ref(),
@@ -92,7 +93,7 @@ fn parse(text: &str) -> Result<Task, TaskError> {
         title: file.title,
         arm,
         joints: file.joints.get_ref().clone(),
-        kinds,
+        kinds: kinds.clone(),
         degree,
         points,
         payload_kg,
@@ -106,6 +107,23 @@ fn parse(text: &str) -> Result<Task, TaskError> {
         weights: reader.weights(file.weights.as_ref())?,
         times_s,
     })
+}
+
+fn check_joints(text: &str, given: &Spanned<Vec<String>>) -> Result<(), TaskError> {
+    let line = line_of(text, &given.span());
+    let key = "joints".to_owned();
+    if given.get_ref().is_empty() {
+        return Err(TaskError::Length { line, key, found: 0, expected: 1, why: "an arm has joints" });
+    }
+    let mut sorted = given.get_ref().clone();
+    sorted.sort_unstable();
+    match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => {
+            let expected = "every joint is expected once";
+            Err(TaskError::Value { line, key, found: format!("{:?} twice", pair[0]), expected })
+        }
+        None => Ok(()),
+    }
 }
 
 /// A key without its unit is the commonest slip: say which keys there are.
@@ -198,23 +216,6 @@ impl Reader<'_> {
             return Err(self.value("arm", &file.arm, expected));
         }
         Ok(ArmSource::Sample)
-    }
-
-    fn joints(&self, given: &Spanned<Vec<String>>) -> Result<(), TaskError> {
-        let line = line_of(self.text, &given.span());
-        let key = "joints".to_owned();
-        if given.get_ref().is_empty() {
-            return Err(TaskError::Length { line, key, found: 0, expected: 1, why: "an arm has joints" });
-        }
-        let mut sorted = given.get_ref().clone();
-        sorted.sort_unstable();
-        match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => {
-                let expected = "every joint is expected once";
-                Err(TaskError::Value { line, key, found: format!("{:?} twice", pair[0]), expected })
-            }
-            None => Ok(()),
-        }
     }
 
     fn point(&self, given: &Spanned<Point>) -> Result<KeyPoint, TaskError> {

@@ -106,6 +106,8 @@ pub(super) fn line_of(text: &str, span: &Range<usize>) -> usize {
 pub(super) struct Joints<'a> {
     pub(super) text: &'a str,
     pub(super) names: &'a [String],
+    /// How they move, as far as the file says it.
+    pub(super) kinds: &'a [Option<JointKind>],
 }
 
 impl Joints<'_> {
@@ -119,7 +121,7 @@ impl Joints<'_> {
     ///
     /// [`TaskError`] for a joint that both turns and slides.
     pub(super) fn kinds(&self, file: &Document) -> Result<Vec<Option<JointKind>>, TaskError> {
-        let mut known: BTreeMap<&String, (JointKind, usize)> = BTreeMap::new();
+        let mut known: BTreeMap<&String, (JointKind, usize, &str)> = BTreeMap::new();
         let ends = [("start", &file.start), ("end", &file.end)];
         let ends = ends.into_iter().filter_map(|(name, end)| Some(at_end(name, end.as_ref()?)));
         let numbers = file.points.iter().map(|point| positions(point.get_ref()));
@@ -137,18 +139,14 @@ impl Joints<'_> {
         for (key, kind, span, joints) in named.chain(ranged) {
             let line = line_of(self.text, &span);
             for joint in joints {
-                let (first, said) = *known.entry(joint).or_insert((kind, line));
+                let (first, said, other) = *known.entry(joint).or_insert((kind, line, key));
                 if first != kind {
-                    return Err(TaskError::TwoKinds {
-                        line,
-                        key: key.to_owned(),
-                        joint: joint.clone(),
-                        said,
-                    });
+                    let (key, joint, other) = (key.to_owned(), joint.clone(), other.to_owned());
+                    return Err(TaskError::TwoKinds { line, key, joint, said, other });
                 }
             }
         }
-        Ok(self.names.iter().map(|name| known.get(name).map(|(kind, _)| *kind)).collect())
+        Ok(self.names.iter().map(|name| known.get(name).map(|(kind, ..)| *kind)).collect())
     }
 
     /// Values as the file has them, with how the joints move, in the order of the joints; `otherwise` for those left out, an
@@ -164,20 +162,22 @@ impl Joints<'_> {
                 return Err(TaskError::UnknownJoint { line, key, joint, declared: self.declared() });
             }
         }
-        let of = |joint: &String| {
+        let of = |(joint, kind): (&String, &Option<JointKind>)| {
             let own = given.tables().find_map(|(_, kind, table)| Some((*table.get_ref().get(joint)?, kind)));
-            own.or_else(|| Some((otherwise?, JointKind::Turns))).ok_or_else(|| TaskError::MissingJoint {
-                line: self.line(given),
-                key: given.tables().next().map_or_else(String::new, |(key, ..)| key.to_owned()),
-                joint: joint.clone(),
-                declared: self.declared(),
-            })
+            own.or_else(|| Some((otherwise?, JointKind::Turns)))
+                .ok_or_else(|| self.missing(given, joint, *kind))
         };
-        self.names.iter().map(of).collect()
+        self.names.iter().zip(self.kinds).map(of).collect()
     }
 
-    fn line<T>(&self, given: &Given<'_, T>) -> usize {
-        given.tables().next().map_or(1, |(_, _, table)| line_of(self.text, &table.span()))
+    /// The error of a joint that is left out where all that move as it does are needed.
+    fn missing<T>(&self, given: &Given<'_, T>, joint: &str, kind: Option<JointKind>) -> TaskError {
+        let kind = kind.or(given.tables().next().map(|(_, kind, _)| kind)).unwrap_or_default();
+        let alike = self.names.iter().zip(self.kinds).filter(|(_, own)| own.is_none_or(|own| own == kind));
+        let declared: Vec<&str> = alike.map(|(name, _)| &**name).collect();
+        let line = given.tables().next().map_or(1, |(_, _, table)| line_of(self.text, &table.span()));
+        let key = given.keys[usize::from(kind == JointKind::Slides)].clone();
+        TaskError::MissingJoint { line, key, joint: joint.to_owned(), declared: declared.join(", ") }
     }
 
     /// The error of a value in one of the tables.

@@ -89,6 +89,7 @@ impl CsvOptions {
             rate_hz: file.rate_hz,
             angle_unit: file.angle_unit,
             slides: file.slides,
+            slides_if_unsaid: BTreeMap::new(),
             as_plan: false,
             columns: columns.map(|(role, quantity, map)| ((role, quantity), list(map))).collect(),
             interfaces: file.interface.into_iter().map(|(name, map)| (name, list(map))).collect(),

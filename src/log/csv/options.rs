@@ -29,6 +29,8 @@ pub struct CsvOptions {
     pub angle_unit: Option<AngleUnit>,
     /// Joints that slide, and the unit of their columns, which then holds whatever a header says.
     pub slides: BTreeMap<String, LengthUnit>,
+    /// The same of those that the table has and says no unit of.
+    pub slides_if_unsaid: BTreeMap<String, LengthUnit>,
     /// Columns given for a role and quantity; these are then not looked for.
     pub columns: BTreeMap<(Role, Quantity), Columns>,
     /// Whether columns that say neither plan nor measurement are the plan, where no column says either.

@@ -95,7 +95,8 @@ pub(super) fn to_si(
 #[derive(Debug, Clone, Copy)]
 struct Length {
     unit: Unit,
-    given: bool,
+    /// Who says so, if it is the caller.
+    given: Option<&'static str>,
 }
 
 impl Length {
@@ -106,7 +107,7 @@ impl Length {
             Quantity::Velocity => (self.unit.per_second(), Measure::LinearSpeed),
         };
         match stated.filter(|stated| stated.measure == measure) {
-            _ if self.given => (unit, "option"),
+            _ if self.given.is_some() => (unit, self.given.unwrap_or_default()),
             Some(stated) => (stated, "file"),
             None => (unit, "guess"),
         }
@@ -119,10 +120,11 @@ fn lengths(
     options: &CsvOptions,
     stated: &impl Fn(usize) -> Option<Unit>,
 ) -> Result<Vec<Option<Length>>, CsvError> {
+    let same = |name: &str, joint: &str| name.to_lowercase() == joint.to_lowercase();
     let of = |(index, joint): (usize, &String)| {
-        let given = options.slides.iter().find(|(name, _)| name.to_lowercase() == joint.to_lowercase());
+        let given = options.slides.iter().find(|(name, _)| same(name, joint));
         if let Some(unit) = given.and_then(|(_, unit)| parse_unit(unit.name())) {
-            return Ok(Some(Length { unit, given: true }));
+            return Ok(Some(Length { unit, given: Some("option") }));
         }
         let uses = layout.uses.iter().filter(|one| one.joint == index);
         let units: Vec<Unit> = uses.filter_map(|one| stated(one.column)).collect();
@@ -133,14 +135,17 @@ fn lengths(
                 let units = [long, angle].map(|unit| unit.name.to_owned());
                 Err(CsvError::MixedKinds { joint: joint.clone(), units })
             }
-            (Some(long), None) => Ok(Some(Length { unit: *long, given: false })),
-            (None, _) => Ok(None),
+            (Some(long), None) => Ok(Some(Length { unit: *long, given: None })),
+            (None, Some(_)) => Ok(None),
+            (None, None) => {
+                let read = options.slides_if_unsaid.iter().find(|(name, _)| same(name, joint));
+                let unit = read.and_then(|(_, unit)| parse_unit(unit.name()));
+                Ok(unit.map(|unit| Length { unit, given: Some("as read") }))
+            }
         }
     };
-    if let Some(name) = options
-        .slides
-        .keys()
-        .find(|name| layout.joints.iter().all(|joint| joint.to_lowercase() != name.to_lowercase()))
+    if let Some(name) =
+        options.slides.keys().find(|name| layout.joints.iter().all(|joint| !same(joint, name)))
     {
         return Err(CsvError::NoJoint {
             what: "--slides".to_owned(),

@@ -276,7 +276,9 @@ impl Assembly {
                 let given = self.kinds.unit_m(candidate.source, &one.name);
                 let scale =
                     || given.unwrap_or_else(|| self.extracted.scale(candidate.source, candidate.field, kind));
-                one.into_track(kind, if degrees && kind == JointKind::Turns { DEGREE_RAD } else { scale() })
+                let scale = if degrees && kind == JointKind::Turns { DEGREE_RAD } else { scale() };
+                let per_rod = self.kinds.travel_per_rod(candidate.source, &one.name);
+                one.into_track(kind, scale * per_rod)
             });
             add_new(&mut series, tracks.collect());
         }
@@ -295,7 +297,10 @@ impl Assembly {
                 shown: is_shown(&self.extracted.topic_of(candidate.source).type_name),
             };
             let kind = |joint: &str| self.kinds.of(candidate.source, joint);
-            let unit_m = |joint: &str| self.kinds.unit_m(candidate.source, joint).unwrap_or(1.0);
+            let unit_m = |joint: &str| {
+                let unit_m = self.kinds.unit_m(candidate.source, joint).unwrap_or(1.0);
+                unit_m * self.kinds.travel_per_rod(candidate.source, joint)
+            };
             let measured = self.kinds.alike(measured, kind);
             let read_as = |joint: &str| (kind(joint), unit_m(joint));
             add_new(&mut series, trajectories::planned(plans, &reading, read_as, &measured, remarks));

@@ -41,6 +41,8 @@ pub(super) struct Kinds {
     told: bool,
     /// Joints whose columns had a unit in the table that was imported.
     stated: BTreeSet<String>,
+    /// Joints that a log of ours says to slide.
+    in_metres: BTreeSet<String>,
     /// Joints that the caller says to slide, and the unit.
     slides: BTreeMap<String, LengthUnit>,
 }
@@ -98,7 +100,8 @@ impl Kinds {
         self.stated = extracted.tables.iter().flat_map(joints_with_unit).map(str::to_owned).collect();
         self.sliding.extend(options.description.as_deref().map(sliding_joints).unwrap_or_default());
         let axes_slide = self.sliding.contains(AXES[0]);
-        self.sliding.extend(joint_kind::sliding(&extracted.metadata));
+        self.in_metres = joint_kind::sliding(&extracted.metadata);
+        self.sliding.extend(self.in_metres.iter().cloned());
         self.sliding.extend(options.slides.keys().cloned());
         axes_slide
     }
@@ -113,9 +116,19 @@ impl Kinds {
     /// The unit that the caller says of lengths of a joint of a source, m.
     pub(super) fn unit_m(&self, source: usize, joint: &str) -> Option<f64> {
         let named = || self.slides.get(self.renamed.get(&(source, joint.to_owned()))?);
-        let given = self.slides.get(joint).or_else(named);
+        // What our logs say to slide, they have in metres.
+        let given = self.slides.get(joint).or_else(named).filter(|_| !self.in_metres.contains(joint));
         // Metres are what is meant where nothing else says a unit, as the name of a field may.
         given.filter(|unit| **unit != LengthUnit::Metres).map(|unit| unit.metres())
+    }
+
+    /// What lengths of a joint of a source are to be multiplied by so that they are its positions: where its cylinder slides it and
+    /// the log has the rod.
+    pub(super) fn travel_per_rod(&self, source: usize, joint: &str) -> f64 {
+        let is_rod =
+            || self.renamed.get(&(source, joint.to_owned())).is_some_and(|name| names_a_cylinder(name));
+        let rod_per_travel = self.conversion.as_ref().and_then(|own| own.rods.rod_per_travel(joint));
+        rod_per_travel.filter(|_| is_rod()).map_or(1.0, f64::recip)
     }
 
     /// Says of a run what stays as it is although it was to be converted.
@@ -138,7 +151,8 @@ impl Kinds {
             return Ok(());
         };
         let mut found = tracks().filter_map(|track| Some((track, rods.of(track.name())?))).peekable();
-        if found.peek().is_none() {
+        let slides = tracks().any(|track| rods.rod_per_travel(track.name()).is_some());
+        if found.peek().is_none() && !slides {
             let present: BTreeSet<&str> = tracks().map(Track::name).collect();
             let present = present.into_iter().collect::<Vec<_>>().join(", ");
             let joints = rods.joints().collect::<Vec<_>>().join(", ");
@@ -146,7 +160,7 @@ impl Kinds {
         }
         // Of a URDF it is known that they turn.
         let known = |(track, rod): (&Track, &Rod)| !track.turns() || rod.range_rad.is_some();
-        if *into == JointKind::Turns && !found.any(known) {
+        if *into == JointKind::Turns && found.peek().is_some() && !found.any(known) {
             let message = "no joint with a cylinder is logged as a length, all are taken as angles; --slides NAME says of \
                            a joint that it is a length";
             remarks.add(Code::Guessed, 1, message);
@@ -165,6 +179,13 @@ impl Kinds {
             return Ok(());
         };
         for (side, series) in sides {
+            if into == JointKind::Slides {
+                for track in series.tracks.iter_mut().filter(|track| !track.turns()) {
+                    let Some(rod_per_travel) = rods.rod_per_travel(track.name()) else { continue };
+                    let rod = |position_m: f64| Some((rod_per_travel * position_m, rod_per_travel));
+                    *track = track.mapped(into, rod).unwrap_or_else(|| track.clone());
+                }
+            }
             for track in series.tracks.iter_mut().filter(|track| track.kind() != into) {
                 let Some(rod) = rods.of(track.name()) else { continue };
                 let (found, expected) = (span(track.position()), possible(into, rod));

@@ -258,8 +258,9 @@ fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
         ]
     });
     let jerk = if slides { "RMS jerk" } else { "RMS jerk deg/s3" };
+    let effort = if slides { "torque, force" } else { "torque" };
     let numbers =
-        [jerk, "RMS power W", "range", "speed", "acceleration", "jerk", "torque", "rod speed", "rod force"];
+        [jerk, "RMS power W", "range", "speed", "acceleration", "jerk", effort, "rod speed", "rod force"];
     let all = format!("All together: {}, {}.", together(Limit::PumpFlow), together(Limit::ToolSpeed));
     let together = slides.then(|| Sentence::note(COUNTED_AS));
     let position = listed_position

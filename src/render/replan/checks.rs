@@ -243,8 +243,9 @@ fn limits([broken, between]: [usize; 2], nearest: &[MarginEntry]) -> String {
         _ => ("used", [worst.value, worst.allowed].map(f64::abs)),
     };
     let [value, allowed] = [value, allowed].map(|value| plan::shown(worst.limit, worst.kind, value));
+    let of = if worst.limit == Limit::Position { ", the range ends at" } else { " of" };
     let worst = format!(
-        "{joint}{}: {} {by}, {value} of {allowed} at {:.1} s",
+        "{joint}{}: {} {by}, {value}{of} {allowed} at {:.1} s",
         worst.limit.name_of(worst.kind),
         share(worst.share),
         worst.t_s

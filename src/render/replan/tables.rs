@@ -35,12 +35,10 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
             Id::SUMMARY,
             verdict.into_iter().chain([Sentence::finding(learnt)]).chain(stays),
         ))
-        .with(checks::section(&Checks::of(replanned), replanned.plan.common_kind()))
         .with(
-            Section::new(EXPECTED, "Expected", [expected(replanned)])
-                .with(Sentence::note(margin))
-                .with_all(mixed(replanned)),
+            checks::section(&Checks::of(replanned), replanned.plan.common_kind()).with_all(mixed(replanned)),
         )
+        .with(Section::new(EXPECTED, "Expected", [expected(replanned)]).with(Sentence::note(margin)))
         .with(Section::new(Id::OTHER, "What changes", [Block::Facts(levers(replanned))]));
     document.sections.extend(learning::runs(replanned));
     document.sections.extend(learning::command(replanned));
@@ -60,7 +58,9 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
 /// What a mean is over joints of both kinds.
 fn mixed(replanned: &Replanned) -> Option<Sentence> {
     let counts = lengths_as_angles(replanned.plan.tracks.iter().map(Track::kind))?;
-    let note = format!("Some joints turn and some slide: here {counts}, as much as a radian as a metre.");
+    let note = format!(
+        "Some joints turn and some slide: in what is told of them together {counts}, as much as a radian as a metre."
+    );
     Some(Sentence::note(note))
 }
 

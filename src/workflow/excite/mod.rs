@@ -47,6 +47,20 @@ impl Inputs {
     fn most(&self, kind: JointKind) -> f64 {
         if kind == JointKind::Slides { self.most_m_s } else { self.most_rad_s }
     }
+
+    /// A bound in the unit of joints that are not there would be taken for one.
+    fn check_bounds(&self, joints: &[JointRoom]) -> Result<(), ExciteFailure> {
+        let [deg, mm] = ["--max-speed-deg-s", "--max-speed-mm-s"];
+        let none =
+            |kind: JointKind| self.most(kind).is_finite() && joints.iter().all(|joint| joint.kind != kind);
+        if none(JointKind::Turns) {
+            return Err(ExciteFailure::BoundsNothing { moves: "turns", option: deg, other: mm });
+        }
+        if none(JointKind::Slides) {
+            return Err(ExciteFailure::BoundsNothing { moves: "slides", option: mm, other: deg });
+        }
+        Ok(())
+    }
 }
 
 /// Why there is no such run.
@@ -56,6 +70,16 @@ pub enum ExciteFailure {
     /// The task.
     #[error(transparent)]
     Task(#[from] PlanFailure),
+    /// A bound that no joint is held by.
+    #[error("no joint of the run {moves}, so that {option} bounds nothing; say {other}")]
+    BoundsNothing {
+        /// How the joints that it would bound move.
+        moves: &'static str,
+        /// The option.
+        option: &'static str,
+        /// That of the joints that there are.
+        other: &'static str,
+    },
     /// The joints or the strokes.
     #[error("there is no such run")]
     Run(#[from] FitError),
@@ -91,6 +115,7 @@ pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
         (Arm::Joints(joints), _) => joints.clone(),
         (_, request) => request.as_ref().map_or_else(Vec::new, |request| rooms(&request.setup)),
     };
+    inputs.check_bounds(&joints)?;
     let limited = |joint: JointRoom| JointRoom { most_rad_s: inputs.most(joint.kind), ..joint };
     let joints: Vec<JointRoom> = joints.into_iter().map(limited).collect();
     let excitation = inputs.excitation.clone();

@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{remark::Remarks, series::Located};
+use crate::{
+    remark::Remarks,
+    series::{JointKind, Located},
+};
 
 /// What the format is called.
 pub(super) const FORMAT: &str = "hydrotrace.join.v1";
@@ -22,7 +25,7 @@ pub struct Joined {
     pub sent_is_command: bool,
     /// When the first sample of the plan was sent, s.
     pub at_s: f64,
-    /// Root mean square difference between what was sent and what was made, rad; null if the caller
+    /// Root mean square difference between what was sent and what was made, rad, of joints that slide m; null if the caller
     /// gave the time.
     pub rms_difference_rad: Option<f64>,
     /// Other places that fit as well; null if the caller gave the time.
@@ -44,6 +47,9 @@ pub struct Joined {
     /// Where the plan was found; not written.
     #[serde(skip)]
     pub located: Option<Located>,
+    /// How the plan's joints move; not written.
+    #[serde(skip)]
+    pub kinds: Vec<JointKind>,
 }
 
 #[cfg(test)]

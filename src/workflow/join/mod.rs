@@ -62,8 +62,8 @@ pub enum JoinFailure {
     Nowhere { plan: PathBuf, topic: String },
     /// A joint that turns in one and slides in the other.
     #[error(
-        "{joint} is a length in one of the log and {}, and an angle in the other: say --slides of a joint that slides, or, of joints \
-         with cylinders, give the plan in lengths, as `hydrotrace export PLAN --hydraulics FILE --as cylinders -o plan.csv` makes it",
+        "{joint} is a length in one of the log and {}, and an angle in the other: say --slides {joint} if it slides (in m; with =mm behind it \
+         in mm), or, of joints with cylinders, give the plan in lengths, as `hydrotrace export PLAN --hydraulics FILE --as cylinders -o plan.csv` makes it",
         plan.display()
     )]
     OtherKind { plan: PathBuf, joint: String },
@@ -213,6 +213,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         files: carried.names(),
         remarks,
         located,
+        kinds: plan.planned.tracks.iter().map(Track::kind).collect(),
     })
 }
 

@@ -46,16 +46,16 @@ impl Plan {
         topic: &str,
         remarks: &mut Remarks,
     ) -> Result<(bool, Located), JoinFailure> {
+        let other_kind =
+            |track: &&Track| sent.track(track.name()).is_some_and(|own| own.kind() != track.kind());
+        if let Some(track) = self.planned.tracks.iter().find(other_kind) {
+            return Err(JoinFailure::OtherKind { plan: path.to_owned(), joint: track.name().to_owned() });
+        }
         let as_planned = locate(&self.planned, sent).map(|found| (false, found));
         let as_command = self.command.as_ref().and_then(|command| Some((true, locate(command, sent)?)));
         let both = as_command.into_iter().chain(as_planned);
         let best = both.min_by(|a, b| share(&a.1).total_cmp(&share(&b.1)));
-        let other_kind =
-            |track: &&Track| sent.track(track.name()).is_some_and(|own| own.kind() != track.kind());
-        let nowhere = || match self.planned.tracks.iter().find(other_kind) {
-            Some(track) => JoinFailure::OtherKind { plan: path.to_owned(), joint: track.name().to_owned() },
-            None => JoinFailure::Nowhere { plan: path.to_owned(), topic: topic.to_owned() },
-        };
+        let nowhere = || JoinFailure::Nowhere { plan: path.to_owned(), topic: topic.to_owned() };
         let (commanded, found) = best.ok_or_else(nowhere)?;
         if share(&found) > FITS {
             let (plan, topic, at_s) = (path.to_owned(), topic.to_owned(), found.at_s + self.span_s()[0]);

@@ -53,6 +53,9 @@ pub enum ReplanFailure {
         path.display()
     )]
     NoTask { path: PathBuf },
+    /// A bound that no joint of the plan is held by.
+    #[error("no joint of the plan {moves}, so that {option} bounds nothing; say {other}")]
+    BoundsNothing { moves: &'static str, option: &'static str, other: &'static str },
     /// A task that begins elsewhere.
     #[error(
         "the plan in {} begins {} beside the first key point of the task ({joint}): the arm would jump there; give the task of \

@@ -102,6 +102,7 @@ pub fn run(
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
     correctable(path, newest, &inputs.rules)?;
     let last = Last::of(path, newest, inputs)?;
+    inputs.check_bounds(&last.plan)?;
     let names = told_apart(&inputs.logs);
     let mut history = History::of((&names, &inputs.logs), observed, &last.plan, &inputs.rules)?;
     let chosen = |places: &mut dyn Iterator<Item = usize>| -> (Vec<String>, Vec<&Recording>) {

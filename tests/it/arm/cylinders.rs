@@ -195,9 +195,14 @@ fn a_cylinder_is_driven_as_its_joint_moves() {
     assert!(error("rod_per_travel = 0.0").contains("[joint.q2] rod_per_travel: found 0"));
     assert!(fault("a_m =", "rod_per_travel = 1.0\na_m =").contains("for the joint turns"));
     assert!(fault("b_m =", "# b_m =").contains("found a_m, delta_rad, angle_sign, expected a_m, b_m"));
-    // A length of a joint that slides is its position: no angle comes of it.
+    // No angle comes of the rod of a joint that slides.
     let text = TOML.to_owned() + "\n[joint.telescope]\nbore_m = 0.08\nrod_m = 0.05\nrod_per_travel = 1.0\n";
-    assert_eq!(Rods::from_toml(&text, "h.toml", None).unwrap().joints().count(), 6);
+    let rods = Rods::from_toml(&text, "h.toml", None).unwrap();
+    assert_eq!((rods.of("telescope"), rods.rod_per_travel("telescope")), (None, Some(1.0)));
+    assert!(
+        error("rod_per_travel = 1.0\nsensor_zero_m = 0.4")
+            .contains("sensor_zero_m: found 0.4, expected none")
+    );
 }
 
 #[test]

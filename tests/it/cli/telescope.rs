@@ -135,13 +135,19 @@ fn a_joint_in_the_unit_of_the_other_kind_is_refused_with_its_line_and_keys() {
     assert!(error.contains("duplicate key"), "{error}");
     let error = fault("{ slew = 20, boom = 12 }", "{ slew = 20, boom = 12, telescope = 350 }");
     assert!(
-        error.contains("limits.speed_mm_s names the joint \"telescope\"")
-            || error.contains("limits.speed_deg_s names the joint \"telescope\""),
+        error.contains(
+            "limits.speed_deg_s names the joint \"telescope\", which line 11 has under positions_mm"
+        ),
         "{error}"
     );
     assert!(error.contains("degrees are for a joint that turns, millimetres for one that slides"), "{error}");
     let error = fault("positions_mm = { telescope = 800 }\n", "");
-    assert!(error.contains("angles_deg has no value for the joint \"telescope\""), "{error}");
+    assert!(
+        error.contains(
+            "positions_mm has no value for the joint \"telescope\"; give one for each of telescope"
+        ),
+        "{error}"
+    );
     let error = fault("positions_mm = { telescope = 800 }", "positions_mm = { telescope = 2800 }");
     assert!(error.contains("telescope at 2800.0 mm, its range is 0.0 mm to 2400.0 mm"), "{error}");
     let error = fault("positions_mm = { telescope = ", "positions_mm = { mast = ");
@@ -167,6 +173,108 @@ fn a_task_all_in_degrees_for_an_arm_that_slides_says_which_keys_it_needs() {
     assert!(
         error.contains("the joint telescope slides by the arm's description, and the task has it in degrees")
             && error.contains("positions_mm"),
+        "{error}"
+    );
+}
+
+/// A column of a PLC that says no unit is that of the option that calls its joint one that slides.
+#[test]
+fn a_column_without_a_unit_is_a_length_where_an_option_says_so_and_is_not_joined_as_an_angle() {
+    let folder = crane("", "");
+    let folder = folder.path();
+    clean(folder, "plan lift.toml -o plan.mcap");
+    driven(folder, "plan.mcap", "run.csv");
+    let text = fs::read_to_string(folder.join("run.csv")).unwrap();
+    fs::write(folder.join("bare.csv"), text.replacen("_cmd_mm", "_cmd", 1).replacen("_act_mm", "_act", 1))
+        .unwrap();
+    let peak = |line: &str| {
+        let report = json(folder, line);
+        let joints = report["joints"].as_array().unwrap().clone();
+        let joint = joints.into_iter().find(|joint| joint["name"] == "telescope").unwrap();
+        (joint["unit"].clone(), joint["tracking_error"]["peak"].as_f64().unwrap())
+    };
+    let known = peak("report run.csv");
+    assert!(known.0 == "m" && known.1 > 0.03, "{known:?}");
+    let told = peak("report bare.csv --slides telescope=mm");
+    assert!(told.0 == "m" && (told.1 - known.1).abs() < 1e-9, "{told:?} {known:?}");
+    let metres = text.replacen("_cmd_mm", "_cmd", 1).replacen("_act_mm", "_act", 1);
+    let mut rows = metres.lines();
+    let mut table = rows.next().unwrap().to_owned();
+    for row in rows {
+        let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        write!(
+            table,
+            "\n{},{},{},{},{},{},{}",
+            cells[0],
+            cells[1],
+            cells[2],
+            cells[3],
+            cells[4],
+            1e-3 * cells[5],
+            1e-3 * cells[6]
+        )
+        .unwrap();
+    }
+    fs::write(folder.join("metres.csv"), table + "\n").unwrap();
+    let told = peak("report metres.csv --slides telescope");
+    assert!(told.0 == "m" && (told.1 - known.1).abs() < 1e-8, "{told:?} {known:?}");
+    let (code, _, error) = said(&run_line(folder, "join bare.csv --plan plan.mcap -o run.mcap"));
+    assert!(
+        code == 1 && error.contains("say --slides telescope if it slides (in m; with =mm behind it"),
+        "{error}"
+    );
+    assert!(!folder.join("run.mcap").exists());
+    let joined = clean(folder, "join bare.csv --plan plan.mcap -o run.mcap --slides telescope=mm");
+    assert!(joined.contains("rms apart on 3 joints (10.00 mm counts as 0.573 deg)"), "{joined}");
+}
+
+#[test]
+fn rods_that_chains_double_are_half_as_long_as_their_joints_travel_both_ways() {
+    let folder = crane("", "");
+    let folder = folder.path();
+    let cylinders = fs::read_to_string(folder.join("hydraulics.toml")).unwrap();
+    clean(folder, "plan lift.toml -o plan.mcap");
+    fs::write(folder.join("half.toml"), cylinders.replace("rod_per_travel = 1.0", "rod_per_travel = 0.5"))
+        .unwrap();
+    driven(folder, "plan.mcap", "run.csv");
+    clean(folder, "export run.csv --hydraulics half.toml --as cylinders -o rods.csv");
+    let rods = fs::read_to_string(folder.join("rods.csv")).unwrap();
+    let first = |text: &str, column: &str| -> f64 {
+        let at = text.lines().next().unwrap().split(',').position(|own| own == column).unwrap();
+        text.lines().nth(1).unwrap().split(',').nth(at).unwrap().parse().unwrap()
+    };
+    assert!((first(&rods, "telescope_measured_m") - 0.1).abs() < 1e-6, "0.2 m of travel");
+    // As a PLC calls them.
+    fs::write(folder.join("rods.csv"), rods.replace("telescope_", "telescope_cyl_")).unwrap();
+    clean(folder, "export rods.csv --hydraulics half.toml -o back.csv");
+    let back = fs::read_to_string(folder.join("back.csv")).unwrap();
+    assert!((first(&back, "telescope_measured_m") - 0.2).abs() < 1e-6, "{}", back.lines().next().unwrap());
+    let alone = cylinders.split("[joint.boom]").next().unwrap().to_owned()
+        + "[joint.telescope]\nbore_m = 0.08\nrod_m = 0.05\nrod_per_travel = 0.5\n";
+    fs::write(folder.join("alone.toml"), alone).unwrap();
+    clean(folder, "export run.csv --hydraulics alone.toml --as cylinders -o alone.csv");
+}
+
+#[test]
+fn a_bound_in_a_unit_that_no_joint_has_is_refused_and_no_machine_of_it_is_simulated() {
+    let folder = crane("", "");
+    let folder = folder.path();
+    let (code, _, error) =
+        said(&run_line(folder, "excite --joint mast=1500:0:3000mm --max-speed-deg-s 10 -o id.mcap"));
+    assert!(
+        code == 1 && error.contains("no joint of the run turns, so that --max-speed-deg-s bounds nothing"),
+        "{error}"
+    );
+    clean(folder, "plan lift.toml -o plan.mcap");
+    driven(folder, "plan.mcap", "run.csv");
+    let text = fs::read_to_string(folder.join("run.csv")).unwrap();
+    fs::write(folder.join("turns.csv"), text.replace("_cmd_", "_planned_")).unwrap();
+    let (code, _, error) =
+        said(&run_line(folder, "replan turns.csv --joints slew,boom --max-correction-mm 5 -o next.mcap"));
+    assert!(code == 1 && error.contains("no joint of the plan slides"), "{error}");
+    let (code, _, error) = said(&run_line(folder, "simulate plan.mcap -o run-2.mcap"));
+    assert!(
+        code == 1 && error.contains("joint telescope slides; only arms whose joints all turn are simulated"),
         "{error}"
     );
 }
