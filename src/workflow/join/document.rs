@@ -75,6 +75,7 @@ mod tests {
             files: vec!["task.toml".into()],
             remarks: Remarks::default(),
             located: None,
+            kinds: Vec::new(),
         };
         is_written_and_read(&document, "join.v1.schema.json", "hydrotrace join, version 1");
     }
