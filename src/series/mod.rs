@@ -7,6 +7,7 @@
 mod align;
 mod clock;
 mod derivative;
+mod frozen;
 mod locate;
 mod noise;
 mod pose;
@@ -19,6 +20,7 @@ mod whole;
 pub use align::{Pair, align};
 pub use clock::{Clock, continuous_clock};
 pub use derivative::{LocalFit, each_local_quadratic, local_quadratic};
+pub use frozen::{frozen, seen};
 pub use locate::{Located, locate};
 pub use noise::{Noise, noise};
 pub(crate) use noise::{is_sensed, white};

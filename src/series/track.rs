@@ -208,7 +208,16 @@ impl Track {
     /// The joint in another kind, by a map from a position to that of the other kind and its slope. Samples without one
     /// are left out; `None` if none is left.
     pub fn mapped(&self, kind: JointKind, map: impl Fn(f64) -> Option<(f64, f64)>) -> Option<Self> {
-        let images: Vec<Option<(f64, f64)>> = self.position().iter().map(|&position| map(position)).collect();
+        self.imaged(kind, self.position().iter().map(|&position| map(position)).collect())
+    }
+
+    /// Some of the samples, by their places; `None` where none is left.
+    pub(crate) fn keeping(&self, keeps: impl Fn(usize) -> bool) -> Option<Self> {
+        let image = |(k, position): (usize, &f64)| keeps(k).then_some((*position, 1.0));
+        self.imaged(self.kind, self.position().iter().enumerate().map(image).collect())
+    }
+
+    fn imaged(&self, kind: JointKind, images: Vec<Option<(f64, f64)>>) -> Option<Self> {
         let kept: Vec<usize> = (0..images.len()).filter(|&i| images[i].is_some()).collect();
         let mut cuts: Vec<usize> =
             self.segments().iter().map(|s| kept.partition_point(|&i| i < s.start)).collect();

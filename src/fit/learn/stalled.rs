@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{
-    correct::{NONE_RAD, largest},
+    correct::{NONE_RAD, largest, rms},
     spoilt::{Left, MATTERS_RAD},
 };
 use crate::units::DEGREE_RAD;
@@ -30,6 +30,9 @@ pub struct Stalled {
     pub error_rad: f64,
 }
 
+/// Errors whose product is more than this share of that of their sizes are alike.
+const ALIKE: f64 = 0.7;
+
 /// Of runs with what was added to the plan in each and what they were off by, rad; at most one entry a stretch.
 pub(super) fn stalled(sent: &[Vec<f64>], errors: &[Vec<f64>], free: &[Range<usize>]) -> Vec<Stalled> {
     free.iter().filter_map(|steps| of_stretch(sent, errors, steps.clone())).collect()
@@ -40,7 +43,13 @@ fn of_stretch(sent: &[Vec<f64>], errors: &[Vec<f64>], steps: Range<usize>) -> Op
         all.iter().map(|values| Some(values.get(steps.clone())?.to_vec())).collect()
     };
     let sizes: Vec<f64> = in_it(sent)?.iter().map(|sent| largest(sent)).collect();
-    let left: Vec<Left> = in_it(errors)?.iter().map(|errors| Left::of(errors)).collect();
+    let errors = in_it(errors)?;
+    let left: Vec<Left> = errors.iter().map(|errors| Left::of(errors)).collect();
+    // What a limit leaves is the same error; that of a machine that has changed meanwhile is another.
+    let alike = |one: usize, other: usize| {
+        let product: f64 = errors[one].iter().zip(&errors[other]).map(|(a, b)| a * b).sum();
+        product > ALIKE * errors[one].len() as f64 * rms(&errors[one]) * rms(&errors[other])
+    };
     let least_rad = left.iter().map(|left| left.rms_rad).fold(f64::INFINITY, f64::min);
     let corrected = |k: usize| sizes[k] > NONE_RAD;
     let grew = |other: usize, k: usize| sizes[other] > sizes[k] + f64::max(GREW.0 * sizes[k], GREW.1);
@@ -48,7 +57,9 @@ fn of_stretch(sent: &[Vec<f64>], errors: &[Vec<f64>], steps: Range<usize>) -> Op
     let idle = |k: usize| {
         let gained_nothing =
             |other: usize| left[other].rms_rad > GAINED * left[k].rms_rad || left[other].tops(&left[k]);
-        let more = (0..sizes.len()).filter(|&other| grew(other, k) && gained_nothing(other));
+        // A larger one before it was for another machine, as one that was cold.
+        let same = |other: usize| !corrected(k) || other > k && alike(k, other);
+        let more = (0..sizes.len()).filter(|&other| grew(other, k) && gained_nothing(other) && same(other));
         more.map(|other| sizes[other] - sizes[k]).reduce(f64::max)
     };
     let spoils = |k: usize| {

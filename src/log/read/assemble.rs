@@ -30,7 +30,7 @@ use crate::{
     },
     remark::{Code, Remarks},
     series::{Clock, JointKind, Series, Signal, continuous_clock},
-    units::{DEGREE_RAD, seconds_since},
+    units::seconds_since,
 };
 
 pub(super) fn assemble(
@@ -272,13 +272,9 @@ impl Assembly {
                 chosen[place + 1..].iter().chain(pending.iter().copied()).collect();
             let found = self.samples(candidate, true, &pending, remarks);
             let tracks = found.into_iter().filter_map(|one| {
-                let kind = self.kinds.of(candidate.source, &one.name);
-                let given = self.kinds.unit_m(candidate.source, &one.name);
-                let scale =
-                    || given.unwrap_or_else(|| self.extracted.scale(candidate.source, candidate.field, kind));
-                let scale = if degrees && kind == JointKind::Turns { DEGREE_RAD } else { scale() };
-                let per_rod = self.kinds.travel_per_rod(candidate.source, &one.name);
-                one.into_track(kind, scale * per_rod)
+                let of_field = |kind| self.extracted.scale(candidate.source, candidate.field, kind);
+                let (kind, scale) = self.kinds.read_as((candidate.source, &one.name), degrees, of_field);
+                one.into_track(kind, scale)
             });
             add_new(&mut series, tracks.collect());
         }
@@ -297,12 +293,8 @@ impl Assembly {
                 shown: is_shown(&self.extracted.topic_of(candidate.source).type_name),
             };
             let kind = |joint: &str| self.kinds.of(candidate.source, joint);
-            let unit_m = |joint: &str| {
-                let unit_m = self.kinds.unit_m(candidate.source, joint).unwrap_or(1.0);
-                unit_m * self.kinds.travel_per_rod(candidate.source, joint)
-            };
             let measured = self.kinds.alike(measured, kind);
-            let read_as = |joint: &str| (kind(joint), unit_m(joint));
+            let read_as = |joint: &str| self.kinds.read_as((candidate.source, joint), false, |_| 1.0);
             add_new(&mut series, trajectories::planned(plans, &reading, read_as, &measured, remarks));
         }
         series

@@ -114,7 +114,7 @@ impl Kinds {
     }
 
     /// The unit that the caller says of lengths of a joint of a source, m.
-    pub(super) fn unit_m(&self, source: usize, joint: &str) -> Option<f64> {
+    fn unit_m(&self, source: usize, joint: &str) -> Option<f64> {
         let named = || self.slides.get(self.renamed.get(&(source, joint.to_owned()))?);
         // What our logs say to slide, they have in metres.
         let given = self.slides.get(joint).or_else(named).filter(|_| !self.in_metres.contains(joint));
@@ -122,9 +122,24 @@ impl Kinds {
         given.filter(|unit| **unit != LengthUnit::Metres).map(|unit| unit.metres())
     }
 
-    /// What lengths of a joint of a source are to be multiplied by so that they are its positions: where its cylinder slides it and
-    /// the log has the rod.
-    pub(super) fn travel_per_rod(&self, source: usize, joint: &str) -> f64 {
+    /// How a joint of a source moves, and what its numbers are to be multiplied by; `of_field` is that of its field.
+    pub(super) fn read_as(
+        &self,
+        (source, joint): (usize, &str),
+        degrees: bool,
+        of_field: impl Fn(JointKind) -> f64,
+    ) -> (JointKind, f64) {
+        let kind = self.of(source, joint);
+        if degrees && kind == JointKind::Turns {
+            return (kind, DEGREE_RAD);
+        }
+        let scale = self.unit_m(source, joint).unwrap_or_else(|| of_field(kind));
+        (kind, scale * self.travel_per_rod(source, joint))
+    }
+
+    /// What lengths of a joint are to be multiplied by so that they are its positions: where its cylinder slides it and the log has
+    /// the rod.
+    fn travel_per_rod(&self, source: usize, joint: &str) -> f64 {
         let is_rod =
             || self.renamed.get(&(source, joint.to_owned())).is_some_and(|name| names_a_cylinder(name));
         let rod_per_travel = self.conversion.as_ref().and_then(|own| own.rods.rod_per_travel(joint));

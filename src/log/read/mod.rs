@@ -10,7 +10,6 @@ mod cylinders;
 mod description;
 mod extract;
 mod frames;
-mod frozen;
 mod held;
 mod indexed;
 mod joints;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{frozen::frozen, turns::turns};
+use super::turns::turns;
 use crate::{
     log::{
         options::{ReadOptions, TimeBase},
@@ -10,7 +10,7 @@ use crate::{
     },
     math::quantile,
     remark::{Code, Remark, Remarks},
-    series::{Clock, Series, Track},
+    series::{Clock, Series, Track, frozen},
     units::{DEGREE_RAD, NS_PER_S},
 };
 

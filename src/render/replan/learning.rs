@@ -29,7 +29,10 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
     let is_lost = matches!(because, KeepReason::GainedLittle) && grown(&replanned.past.runs, *last_rad);
     let why = match because {
         KeepReason::GainedLittle if last_rad > best_rad => {
-            format!(", the last run has {last}, which is no better.")
+            let of_last = replanned.past.runs.last().and_then(|run| run.mean_peak_rad);
+            let is_last = of_last.is_some_and(|rad| (rad - last_rad).abs() < 1e-12);
+            let what = if is_last { "the last run has" } else { "the last other correction had" };
+            format!(", {what} {last}, which is no better.")
         }
         KeepReason::GainedLittle if is_lost => {
             ", more than the best run before it had: what is sent comes to more now than it did then."
@@ -89,7 +92,7 @@ fn repeats(replanned: &Replanned) -> Option<&'static str> {
     let told = error > 0.0 && !surprised && !matches!(because, KeepReason::ExpectedWorse { .. });
     told.then_some(match (spread >= MOSTLY * MOSTLY * error, failed) {
         (true, _) => " What is left comes differently from run to run.",
-        (false, false) => " What is left comes again in every run, and no correction lessens it.",
+        (false, false) => " What is left comes again in every run, and the last correction hardly lessened it.",
         (false, true) => {
             " What is left comes again in every run, and no correction lifts it: where a limit of speed or flow, or a pump that \
              joints share, holds them back, a slower plan or fewer joints at once help."

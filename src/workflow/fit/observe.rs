@@ -8,6 +8,8 @@ use thiserror::Error;
 use crate::{
     fit::Observation,
     log::{Input, LogError, LogFiles, ReadOptions, Recording, SignalRole},
+    remark::Code,
+    series::seen,
 };
 
 /// Why a run cannot be fitted.
@@ -29,7 +31,7 @@ const SIGNALS: [SignalRole; 5] = [
     SignalRole::SupplyPressure,
 ];
 
-/// Reads one run, wherever its files are, in one pass.
+/// Reads one run, wherever its files are, in one pass; where a sensor stood while its joint moved, nothing was measured.
 ///
 /// # Errors
 ///
@@ -39,7 +41,18 @@ pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, Obse
     let path = inputs.first().map(|input| input.name().to_owned()).unwrap_or_default();
     let read = read.clone().wanting(&SIGNALS);
     let recording = LogFiles::with(inputs, &read).and_then(|files| files.scan()?.read(&read));
-    recording.map_err(|source| ObserveFailure { path, source })
+    let mut recording = recording.map_err(|source| ObserveFailure { path, source })?;
+    let Recording { planned, measured, remarks, .. } = &mut recording;
+    for track in &mut measured.tracks {
+        let Some(own) = planned.track(track.name()).and_then(|plan| seen(plan, track)) else { continue };
+        let message = format!(
+            "what the sensor of {} repeats while its joint moves was not measured: left out",
+            track.name()
+        );
+        remarks.add(Code::FrozenSensor, (track.len() - own.len()) as u64, message);
+        *track = own;
+    }
+    Ok(recording)
 }
 
 /// The same for a fit: the command if the log has one, else the plan.

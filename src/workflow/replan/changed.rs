@@ -48,6 +48,9 @@ struct Era {
     /// How often the machine had changed, and by how much of mean peak error, rad.
     changes: usize,
     unsteady_rad: f64,
+    /// How often it moved as before again, and by how much it had changed at most, rad.
+    returns: usize,
+    swings_rad: f64,
 }
 
 impl History {
@@ -58,8 +61,14 @@ impl History {
         let mut said = None;
         for run in 1..self.runs.len() {
             if let Some(k) = self.returned(&before, &now, run, fits) {
+                let (returns, swings_rad) = (now.returns + 1, now.swings_rad.max(now.unsteady_rad));
                 let mut eras = before.drain(k..).chain([now]).collect::<Vec<Era>>().into_iter();
                 now = eras.next().unwrap_or_default();
+                (now.returns, now.swings_rad) = (returns, swings_rad);
+                // Once is an exception; more often it comes in two kinds, and will again.
+                if returns > 1 {
+                    (now.changes, now.unsteady_rad) = (2 * returns, swings_rad);
+                }
                 let passed: BTreeSet<usize> = eras.flat_map(|era| era.runs).collect();
                 said = Some(self.said_of_return(run, &passed));
                 now.runs.retain(|k| !passed.contains(k));
@@ -80,15 +89,20 @@ impl History {
             let mut next = Era {
                 runs: now.runs.iter().copied().filter(|k| *k >= from).chain([run]).collect(),
                 others: (0..self.places[from]).collect(),
-                changes: now.changes + usize::from(!self.drifts),
-                unsteady_rad: now.unsteady_rad.max(self.differed_rad(&now.runs, run, &sign)),
+                changes: (now.changes + usize::from(!self.drifts)).max(2 * now.returns),
+                unsteady_rad: now
+                    .unsteady_rad
+                    .max(now.swings_rad)
+                    .max(self.differed_rad(&now.runs, run, &sign)),
+                returns: now.returns,
+                swings_rad: now.swings_rad,
             };
             let passed = |place: &&usize| **place >= self.places[from];
             next.others.extend(now.others.iter().filter(passed));
             before.push(std::mem::replace(&mut now, next));
         }
-        (self.changes, self.unsteady_rad) = (now.changes, now.unsteady_rad);
         let stays = |k: usize| now.runs.contains(&k);
+        (self.changes, self.unsteady_rad) = (now.changes, now.unsteady_rad);
         retain(&mut self.runs, stays);
         retain(&mut self.series, stays);
         retain(&mut self.places, stays);
@@ -237,23 +251,18 @@ impl History {
         goes_on: Option<String>,
         remarks: &mut Remarks,
     ) {
-        let again = changed.is_some() && self.changes > 1;
-        let mut say =
-            |count: usize, message: String| remarks.add(Code::MachineChanged, count as u64, message);
-        if let Some(message) = changed {
-            say(1, message);
-        }
-        if again {
+        let again = (changed.is_some() && self.changes > 1).then(|| {
             let message = format!(
                 "the machine changed {} times between these runs, by up to {} of mean peak error: it may again, so half of \
                  the usual step is taken, and more error is expected",
                 self.changes,
                 self.kind.says(self.unsteady_rad)
             );
-            say(self.changes, message);
-        }
-        if let Some(message) = goes_on {
-            say(1, message);
+            (self.changes, message)
+        });
+        let all = [changed.map(|message| (1, message)), again, goes_on.map(|message| (1, message))];
+        for (count, message) in all.into_iter().flatten() {
+            remarks.add(Code::MachineChanged, count as u64, message);
         }
     }
 

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::{ReplanFailure, subject::Subject};
 use crate::{
     fit::{
-        Fit, JointFit, Learning, Learnt, Oscillation, Room, SHARE, STEP_S, Step, Stop, Trial, learn, predict,
+        Fit, JointFit, JointStep, Learning, Learnt, Oscillation, Room, SHARE, STEP_S, Step, Stop, Trial,
+        learn, predict,
     },
     math::{State, range},
     plan::{BETWEEN, Interpolation, Limit, Margin, Setup, SpeedRoom},
@@ -210,6 +211,10 @@ pub(super) fn commanded(
             found = checked(&sent(&learnt, &shares));
         }
         margins = nearest(found);
+    } else {
+        for (j, of) in shares.iter_mut().enumerate() {
+            *of = gentle(plan.tracks[j].kind(), &planned[j], &learnt.joints[j]);
+        }
     }
     let share_of = |name: &str| index(name).map_or(1.0, |j| shares[j].0);
     let series = learnt.command(plan, share_of)?;
@@ -224,6 +229,26 @@ pub(super) fn commanded(
         .collect();
     let joints = joints(fit, plan, &series, &planned, &learnt, &shares)?;
     Ok(Commanded { series, acceleration_rad_s2, joints, hunting: learnt.hunting, margins })
+}
+
+/// Where no limit of a joint is known, a correction accelerates it to no more than this times what its plan does, or to this,
+/// rad/s² and m/s²: slow plans start over a dead band with more than theirs.
+pub(super) const SHARPEST: f64 = 4.0;
+const GENTLE: (f64, f64) = (30.0 * DEGREE_RAD, 0.3);
+
+/// The share of a correction that keeps to that; what was sent before came without harm.
+fn gentle(kind: JointKind, planned: &[[f64; 4]], made: &JointStep) -> (f64, Option<Limit>) {
+    let peak = |share: f64| {
+        let both = planned.iter().zip(&made.correction);
+        both.fold(0.0_f64, |most, (state, made)| most.max((state[2] + share * made[2]).abs()))
+    };
+    let gentle = if kind == JointKind::Slides { GENTLE.1 } else { GENTLE.0 };
+    let most = (SHARPEST * peak(0.0)).max(gentle);
+    if matches!(made.step, Step::Kept { .. }) || peak(1.0) <= most {
+        return (1.0, None);
+    }
+    let share = SHARES.into_iter().find(|share| peak(*share) <= most).unwrap_or(0.0);
+    (share, Some(Limit::Acceleration))
 }
 
 /// How something is interpolated, and how many steps a point lies after the one before.

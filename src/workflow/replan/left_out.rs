@@ -84,7 +84,8 @@ fn dead(observed: &[&Recording]) -> LeftOut {
         if last.is_some_and(stands) && answering > 0 {
             found.entry(observed.len() - 1).or_insert_with(why);
         }
-        if last.is_some_and(answers) && answering > 1 {
+        let known = last.is_some_and(answers) && answering > 1 || last.is_some_and(stands) && answering > 0;
+        if known {
             for k in (0..shares.len()).filter(|k| stands(&shares[*k])) {
                 found.entry(k).or_insert_with(why);
             }

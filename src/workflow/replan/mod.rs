@@ -313,7 +313,8 @@ impl Maker<'_> {
         let command = precompensates.then(|| commanded(fit, &subject, &trials, learning)).transpose()?;
         let sent = command.as_ref().map_or(&plan, |command| &command.series);
         let newest = keep.unwrap_or(trials.len().saturating_sub(1));
-        let base = trials.get(newest).map(|trial| (trial.sent, trial.measured));
+        let times = (0..trials.len()).filter(|k| kept && history.same(*k, newest)).count();
+        let base = trials.get(newest).map(|trial| (trial.sent, trial.measured, times));
         let joints = || command.iter().flat_map(|command| &command.joints);
         let learnt = |name: &str| {
             joints().find(|joint| joint.name == name).map_or((None, None), |one| (one.spread_rad, one.held))

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Candidate, Commanded, Decision, HeldTo, PastRun, Predicted, ReplanFailure, Response, last::Last,
+    Candidate, Commanded, Decision, HeldTo, PastRun, Predicted, ReplanFailure, Response, command::SHARPEST,
+    last::Last,
 };
 use crate::{
     fit::Fit,
@@ -230,8 +231,13 @@ pub(super) fn replanned(
             remarks.add(Code::BeyondLimit, 1, message);
         }
         for joint in command.joints.iter().filter(|joint| joint.share < LEAST_SHARE) {
+            let why = if command.margins.is_empty() {
+                format!("accelerate it to more than {SHARPEST} times its plan, and no limit of it is known")
+            } else {
+                "break a limit".to_owned()
+            };
             let message = format!(
-                "{:.0} % of the correction of {} is applied: more of it would break a limit",
+                "{:.0} % of the correction of {} is applied: more of it would {why}",
                 100.0 * joint.share,
                 joint.name
             );

@@ -91,8 +91,12 @@ pub struct Response {
     pub band_rad: f64,
 }
 
-/// Peak of what differs from run to run by its root mean square: in the mean, and what nine of ten stay below.
-const PEAKS_OF_SPREAD: [f64; 2] = [1.0, 2.5];
+/// Peak of what differs from run to run by its root mean square: in the mean, and what nine of ten stay below. A correction brings
+/// what the last run had of it, too.
+const PEAKS_OF_SPREAD: [f64; 2] = [1.8, 2.5];
+
+/// The mean of what is sent again, where it was sent once: of the run that came best, which was lucky.
+const PEAK_AGAIN: f64 = 1.0;
 
 /// Share of what the model does not explain that comes again beside what the last run of this plan shows. This and the others are
 /// from two studies: that of docs/replan.md, and forty machines of a simulator that knows no part of this one.
@@ -104,8 +108,8 @@ const OF_CHANGE: [f64; 2] = [0.02, 0.03];
 /// The same where runs tell the spread: the second half of a first correction changes as much as the first.
 const OF_CHANGE_AGAIN: [f64; 2] = [0.02, 0.06];
 
-/// The same with the responses behind it, from what was sent and what came in a run of this plan, if one is known: the model then
-/// tells only what changes. `learnt` gives what a joint did differently from run to run, rad, and where it is held.
+/// The same with the responses behind it, from what was sent and what came in a run of this plan, if one is known, and how often
+/// that was sent: the model then tells only what changes. `learnt` gives what a joint did differently from run to run, rad, and where it is held.
 ///
 /// # Errors
 ///
@@ -114,24 +118,25 @@ pub fn promised(
     fit: &Fit,
     plan: &Series,
     sent: &Series,
-    run: Option<(&Series, &Series)>,
+    run: Option<(&Series, &Series, usize)>,
     learnt: impl Fn(&str) -> (Option<f64>, Option<Stop>),
     rules: &Rules,
 ) -> Result<(Predicted, Vec<Response>), FitError> {
     let left = |name: &str| {
-        let before = run.and_then(|(before, _)| before.track(name)).zip(sent.track(name));
+        let before = run.and_then(|(before, ..)| before.track(name)).zip(sent.track(name));
         let changed = before.zip(plan.track(name)).map(|((before, sent), plan)| {
             let (changed_rad, corrected_rad) = (changed_rad(before, sent), changed_rad(plan, sent));
             if changed_rad < SAME_RAD.max(SAME * corrected_rad) { 0.0 } else { changed_rad }
         });
-        Left::of(fit, name, changed, learnt(name).0)
+        let times = run.map_or(1, |(.., times)| times);
+        Left::of(fit, name, (changed, times), learnt(name).0)
     };
     let (mut pairs, mut responses) = (Vec::new(), Vec::new());
     for track in &plan.tracks {
         let (Some(joint), Some(sent)) = (fit.joint(track.name()), sent.track(track.name())) else { continue };
         let response = predict(&joint.model, sent)?;
         let before =
-            run.and_then(|(sent, came)| Some((sent.track(track.name())?, came.track(track.name())?)));
+            run.and_then(|(sent, came, _)| Some((sent.track(track.name())?, came.track(track.name())?)));
         let response = match before {
             Some((sent, came)) => {
                 let held = learnt(track.name()).1;
@@ -180,7 +185,12 @@ struct Left {
 impl Left {
     /// By the spread of runs where it is known, by held-out starts of the fit and by what changes otherwise. `changed_rad` is `None`
     /// where no run of this plan is known.
-    fn of(fit: &Fit, name: &str, changed_rad: Option<f64>, spread_rad: Option<f64>) -> Self {
+    fn of(
+        fit: &Fit,
+        name: &str,
+        (changed_rad, times): (Option<f64>, usize),
+        spread_rad: Option<f64>,
+    ) -> Self {
         let joint = fit.joint(name);
         let [mean_rad, most_rad] = joint.and_then(|joint| joint.unexplained_peak_rad).unwrap_or([0.0; 2]);
         // A joint that is sent what it was sent before is expected to do what it did.
@@ -188,16 +198,19 @@ impl Left {
         let [mean_rad, most_rad] = match (spread_rad, changed_rad) {
             (Some(spread_rad), changed_rad) => {
                 let [mean, most] = OF_CHANGE_AGAIN.map(|share| share * changed_rad.unwrap_or(0.0));
-                let [of_mean, of_most] = PEAKS_OF_SPREAD.map(|peaks| peaks * spread_rad);
+                let [of_new, of_most] = PEAKS_OF_SPREAD.map(|peaks| peaks * spread_rad);
+                let lucky = if times > 1 { 0.0 } else { PEAK_AGAIN * spread_rad };
+                let of_mean = if again { lucky } else { of_new };
                 [of_mean.hypot(mean), of_most.hypot(most)]
             }
             (None, None) => [mean_rad, most_rad],
+            (None, Some(_)) if again => [0.0, most_rad],
             (None, Some(changed_rad)) => {
                 let [mean, most] = OF_CHANGE.map(|share| share * changed_rad);
                 [(REPEATED * mean_rad).hypot(mean), most_rad.hypot(most)]
             }
         };
-        Self { mean_rad: if again { 0.0 } else { mean_rad }, most_rad }
+        Self { mean_rad, most_rad }
     }
 }
 
