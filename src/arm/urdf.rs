@@ -231,7 +231,11 @@ impl<'a> Tree<'a> {
                 let element = format!("<joint {:?}>", joint.name);
                 if joint.kind != JointKind::Fixed && onwards.is_some() {
                     let found = "a moving joint beside the path to the tool";
-                    return Err(self.at.unexpected(element, found, "a serial chain; name another tool"));
+                    return Err(self.at.unexpected(
+                        element,
+                        found,
+                        "a serial chain; name another tool, or make this joint fixed",
+                    ));
                 }
                 waiting.push((joint.child.link.as_str(), place * self.pose(&joint.origin, &element)?));
             }
