@@ -7,6 +7,7 @@ pub mod export;
 pub mod fit;
 #[cfg(feature = "parquet")]
 pub mod fleet;
+mod idle_bound;
 pub mod import;
 pub mod info;
 pub mod join;

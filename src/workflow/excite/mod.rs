@@ -9,6 +9,7 @@ use super::{
         Carried, EXCITE, MADE_BY,
         plan_log::{PlanLog, Planned},
     },
+    idle_bound::{self, IdleBound},
     plan::{PlanFailure, PlanRequest, TaskFiles},
 };
 use crate::{
@@ -48,18 +49,11 @@ impl Inputs {
         if kind == JointKind::Slides { self.most_m_s } else { self.most_rad_s }
     }
 
-    /// A bound in the unit of joints that are not there would be taken for one.
-    fn check_bounds(&self, joints: &[JointRoom]) -> Result<(), ExciteFailure> {
-        let [deg, mm] = ["--max-speed-deg-s", "--max-speed-mm-s"];
-        let none =
-            |kind: JointKind| self.most(kind).is_finite() && joints.iter().all(|joint| joint.kind != kind);
-        if none(JointKind::Turns) {
-            return Err(ExciteFailure::BoundsNothing { moves: "turns", option: deg, other: mm });
-        }
-        if none(JointKind::Slides) {
-            return Err(ExciteFailure::BoundsNothing { moves: "slides", option: mm, other: deg });
-        }
-        Ok(())
+    /// Whether every bound has a joint to hold.
+    fn check_bounds(&self, joints: &[JointRoom]) -> Result<(), IdleBound> {
+        let given = [self.most_rad_s, self.most_m_s].map(f64::is_finite);
+        let options = ["--max-speed-deg-s", "--max-speed-mm-s"];
+        idle_bound::check("run", given, options, &joints.iter().map(|joint| joint.kind))
     }
 }
 
@@ -71,15 +65,8 @@ pub enum ExciteFailure {
     #[error(transparent)]
     Task(#[from] PlanFailure),
     /// A bound that no joint is held by.
-    #[error("no joint of the run {moves}, so that {option} bounds nothing; say {other}")]
-    BoundsNothing {
-        /// How the joints that it would bound move.
-        moves: &'static str,
-        /// The option.
-        option: &'static str,
-        /// That of the joints that there are.
-        other: &'static str,
-    },
+    #[error(transparent)]
+    Bound(#[from] IdleBound),
     /// The joints or the strokes.
     #[error("there is no such run")]
     Run(#[from] FitError),

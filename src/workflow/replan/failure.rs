@@ -9,7 +9,7 @@ use crate::{
     fit::FitError,
     plan::PlanError,
     series::{Broken, JointKind, SignalError},
-    workflow::{fit::FitFailure, plan::PlanFailure},
+    workflow::{fit::FitFailure, idle_bound::IdleBound, plan::PlanFailure},
 };
 
 /// Why there is no plan for the next run.
@@ -54,8 +54,8 @@ pub enum ReplanFailure {
     )]
     NoTask { path: PathBuf },
     /// A bound that no joint of the plan is held by.
-    #[error("no joint of the plan {moves}, so that {option} bounds nothing; say {other}")]
-    BoundsNothing { moves: &'static str, option: &'static str, other: &'static str },
+    #[error(transparent)]
+    IdleBound(#[from] IdleBound),
     /// A task that begins elsewhere.
     #[error(
         "the plan in {} begins {} beside the first key point of the task ({joint}): the arm would jump there; give the task of \

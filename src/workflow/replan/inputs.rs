@@ -7,8 +7,11 @@ use crate::{
     fit::Learning,
     log::ReadOptions,
     replay::Rules,
-    series::{JointKind, Series},
-    workflow::plan::Shaping,
+    series::{Series, Track},
+    workflow::{
+        idle_bound::{self, IdleBound},
+        plan::Shaping,
+    },
 };
 
 /// Largest growth of a plan that may be asked for, as a share.
@@ -81,21 +84,10 @@ impl Inputs {
         Ok(())
     }
 
-    /// A bound in the unit of joints that the plan does not have would be taken for one.
-    pub(super) fn check_bounds(&self, plan: &Series) -> Result<(), ReplanFailure> {
-        let [deg, mm] = ["--max-correction-deg", "--max-correction-mm"];
-        let bounds = [(self.learning.most_rad, JointKind::Turns), (self.learning.most_m, JointKind::Slides)];
-        let idle = |(most, kind): &(Option<f64>, JointKind)| {
-            most.is_some() && plan.tracks.iter().all(|track| track.kind() != *kind)
-        };
-        match bounds.into_iter().find(idle) {
-            Some((_, JointKind::Turns)) => {
-                Err(ReplanFailure::BoundsNothing { moves: "turns", option: deg, other: mm })
-            }
-            Some((_, JointKind::Slides)) => {
-                Err(ReplanFailure::BoundsNothing { moves: "slides", option: mm, other: deg })
-            }
-            None => Ok(()),
-        }
+    /// Whether every bound has a joint of the plan to hold.
+    pub(super) fn check_bounds(&self, plan: &Series) -> Result<(), IdleBound> {
+        let given = [self.learning.most_rad, self.learning.most_m].map(|most| most.is_some());
+        let options = ["--max-correction-deg", "--max-correction-mm"];
+        idle_bound::check("plan", given, options, &plan.tracks.iter().map(Track::kind))
     }
 }
