@@ -23,7 +23,7 @@ Examples:
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Logs of one run: MCAP files (parts of a split bag count as one), ROS bags or tables (CSV, Parquet)
+    /// Logs of one run: MCAP files (parts of a split bag count as one), ROS 2 bags or tables (CSV, Parquet)
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
 

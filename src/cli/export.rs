@@ -33,7 +33,7 @@ has the same numbers.";
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct Args {
-    /// Logs of one run: MCAP files, ROS bags or tables (CSV, Parquet)
+    /// Logs of one run: MCAP files, ROS 2 bags or tables (CSV, Parquet)
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
 

@@ -11,7 +11,7 @@ use crate::{
 /// Topics of a log, those that a report would use, and damage
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// Logs of one run: MCAP files, ROS bags or tables (CSV, Parquet)
+    /// Logs of one run: MCAP files, ROS 2 bags or tables (CSV, Parquet)
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
 

@@ -31,6 +31,7 @@ mod predict;
 mod robust;
 mod run;
 mod set_values;
+mod shared;
 mod simulate;
 mod skill;
 mod start_error;
@@ -52,6 +53,7 @@ pub use outcome::{
 };
 pub use predict::predict;
 pub use run::{Observation, SPARSEST_S};
+pub use shared::{SharedJoint, SharedLimit};
 pub use start_error::{PredictedStart, StartErrorPredictor};
 
 use crate::{series::JointKind, threads, units::DEGREE_RAD};
@@ -163,6 +165,10 @@ pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), Fit
         }
         return Err(FitError::NothingMoves { logs: logs.len(), shared: names.len(), least_travel_rad });
     }
-    let fit = Fit { joints, left_out, margin_starts: ratios.len(), peak_margin: skill::margin(ratios) };
+    let named: Vec<(String, JointKind)> =
+        joints.iter().map(|joint| (joint.name.clone(), joint.kind)).collect();
+    let shared = shared::shared(&named, logs);
+    let fit =
+        Fit { joints, left_out, margin_starts: ratios.len(), peak_margin: skill::margin(ratios), shared };
     Ok((fit, held_out))
 }

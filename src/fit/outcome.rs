@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Estimated, FitError, Model};
+use super::{Estimated, FitError, Model, SharedLimit};
 use crate::series::JointKind;
 
 /// Held-out skill below which no command should be made from a model.
@@ -32,6 +32,9 @@ pub struct Fit {
     pub peak_margin: f64,
     /// Number of starts behind the margin.
     pub margin_starts: usize,
+    /// The limit that joints share, such as a pump, where the logs show one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shared: Option<SharedLimit>,
 }
 
 /// A joint that cannot be fitted, for it was hardly sent anywhere while it was measured.

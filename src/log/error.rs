@@ -93,11 +93,11 @@ pub enum LogError {
     /// Planned and measured joints have no name in common.
     #[error(
         "planned joints ({planned}) and measured joints ({measured}) have no name in common; \
-         choose other topics with --planned and --measured, or give a topic that carries no names those of its joints \
-         with --joints; columns of other names are paired by `hydrotrace import LOG -o run.mcap --planned \
+         choose other topics with --planned and --measured, or give a topic that carries no names those of its joints, in \
+         the order of its numbers, with --joints={given}; columns of other names are paired by `hydrotrace import LOG -o run.mcap --planned \
          JOINT=COLUMN,... --measured JOINT=COLUMN,...`"
     )]
-    NoCommonJoint { planned: String, measured: String },
+    NoCommonJoint { planned: String, measured: String, given: String },
     /// Plan and measurement are of different times.
     #[error(
         "the plan covers {:.2} to {:.2} s, the measurement {:.2} to {:.2} s: they have no time in common; {}",

@@ -17,6 +17,9 @@ const SWINGS_S: f64 = 3.0;
 /// One that has rested so long has settled, s.
 const SETTLED_S: f64 = 0.25;
 
+/// What the shapes that departures are tried with miss of others, however fast the samples come, s.
+const SHAPE_S: f64 = 0.008;
+
 /// A joint that was shaken slows down to this share of its speed before it leaves.
 const SHAKEN: f64 = 0.5;
 
@@ -240,13 +243,17 @@ fn reversal(
             interval_s: None,
         };
     };
+    // A plan that rested leaves at an instant of its own; what the smoothing moves the other crossing by is not known.
+    let window_s = signals.thresholds.window_s;
+    let rested = !planned.reversal && planned.rest_before_s >= 2.0 * window_s;
+    let (planned_s, moved_s) = if rested { (asked_s, window_s) } else { (planned_s, 0.0) };
     let measured_s = 0.5 * (low_s + high_s);
     // Noise of the speed over its slope between the two thresholds is noise of the instant.
     let climb_s = (high_s - low_s).max(0.0);
     let deviation_rad_s = signals.deviation_rad_s[measured.samples.start];
     let deviation_s = deviation_rad_s * climb_s / (start - stop).max(f64::MIN_POSITIVE);
     let delay_s = measured_s - planned_s;
-    let half_s = NORMAL_975 * deviation_s + blind_s;
+    let half_s = NORMAL_975 * deviation_s + blind_s + moved_s;
     let interval_s = Some([delay_s - half_s, delay_s + half_s]);
     Delay { method: crossing, planned_s, measured_s: Some(measured_s), interval_s }
 }
@@ -299,7 +306,7 @@ fn blind_s(
     let seen = planned.samples.clone().find(travelled).unwrap_or(first);
     let usual_s = signals.sample_interval_s.max(pair.planned_interval_s);
     let gap_s = gap_s(pair, planned, planned_s).max(gap_s(pair, measured, measured_s));
-    usual_s.max(gap_s) + pair.t_s[seen] - pair.t_s[first]
+    usual_s.max(gap_s).max(SHAPE_S) + pair.t_s[seen] - pair.t_s[first]
 }
 
 /// Time between the two samples around an instant, s.

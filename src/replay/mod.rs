@@ -34,6 +34,7 @@ mod tool;
 mod tracking;
 mod transition;
 pub(crate) mod unit;
+mod unrounded;
 
 pub use delay::{measured_starts, measured_stops};
 pub use direction::DirectionDelay;

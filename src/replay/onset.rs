@@ -11,6 +11,7 @@ use std::ops::Range;
 use multiversion::multiversion;
 
 use super::{Rules, at_rest::AtRest};
+use crate::math::{SIGMA_PER_MAD, mad};
 
 /// An onset with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,6 +35,15 @@ const NEAR_EDGE: f64 = 0.6;
 const LIKELY: f64 = 2.0;
 const LONGEST_BEFORE_S: f64 = 4.0;
 const ROUNDS: usize = 4;
+/// What a rise misses, root mean square, by what scatters at rest: from there on the motion takes another course in the time that is
+/// looked at, and half of that is looked at; a few samples stay.
+const OTHER_COURSE: f64 = 5.0;
+const FEWEST_RISEN: usize = 4;
+/// A motion whose mean speed is so many times the threshold is far beyond it.
+const FAST: f64 = 20.0;
+/// So many times what scatters tells a rise from it.
+const CLEAR: f64 = 30.0;
+const FEWEST: usize = 6;
 
 /// How a joint leaves rest, as travel over time since the departure.
 #[derive(Clone, Copy)]
@@ -132,7 +142,7 @@ fn within(
     let times = &t_s[segment.clone()];
     let first = times.partition_point(|&t| t < crossing_s - before_s);
     let end = times.partition_point(|&t| t <= crossing_s + window_s + rules.onset_after_s);
-    if end < first + 6 {
+    if end < first + FEWEST {
         return None;
     }
     let block = (end - first).div_ceil(MOST_POINTS);
@@ -163,17 +173,34 @@ fn within(
 
     // The crossing of a smoothed speed may lie closer to the segment's start than the rest does.
     let before_s = before_s.min(crossing_s - times[first]);
-    let on_s = window_s.min(times[end - 1] - crossing_s);
+    // What creeps before it leaves crosses earlier than a smoothed speed would.
+    let on_s = (window_s + 0.5 * rules.onset_after_s).min(times[end - 1] - crossing_s);
     let steps = |span_s: f64| (span_s / rules.onset_step_s).floor().clamp(0.0, 10_000.0);
     let (back, on) = (steps(before_s), steps(on_s));
     #[expect(clippy::cast_possible_truncation, reason = "clamped above")]
     let grid = (-(back as i64)..=on as i64).map(|k| k as f64 * rules.onset_step_s);
-    let all: Vec<Fit> = grid
-        .flat_map(|t0| fits(&t, &x, t0))
-        .filter(|fit| fit.onset_s(stop_speed).is_some_and(|s| s <= times[end - 1] - crossing_s))
-        .collect();
-    let best = all.iter().min_by(|a, b| a.squares.total_cmp(&b.squares))?;
-    let freedom = ((t.len() as f64 - 4.0).max(1.0) / best.redundancy(&t, &x)).max(1.0);
+    let grid: Vec<f64> = grid.collect();
+    let tried = |count: usize| -> Vec<Fit> {
+        let mean = mean_of(&x[..count]);
+        let own: Vec<f64> = x[..count].iter().map(|x| x - mean).collect();
+        let all = grid.iter().flat_map(|t0| fits(&t[..count], &own, *t0));
+        all.filter(|fit| fit.onset_s(stop_speed).is_some_and(|s| s <= t[count - 1])).collect()
+    };
+    let least = |all: &[Fit]| all.iter().copied().min_by(|a, b| a.squares.total_cmp(&b.squares));
+    let mut count = t.len();
+    let mut all = tried(count);
+    while let Some(shorter) = least(&all).and_then(|best| best.shorter(&t[..count], &x[..count], stop_speed))
+    {
+        let fewer = tried(shorter);
+        if fewer.is_empty() {
+            break;
+        }
+        (count, all) = (shorter, fewer);
+    }
+    let mean = mean_of(&x[..count]);
+    let (t, x) = (&t[..count], &x[..count].iter().map(|x| x - mean).collect::<Vec<f64>>());
+    let best = &least(&all)?;
+    let freedom = ((t.len() as f64 - 4.0).max(1.0) / best.redundancy(t, x)).max(1.0);
     let variance = (best.squares / freedom).max(f64::MIN_POSITIVE);
     let likely = all
         .iter()
@@ -258,6 +285,31 @@ impl Fit {
             return None;
         }
         Some(self.t0 + self.rise.passes_s(self.scale, speed_rad_s)?)
+    }
+
+    /// How many samples to look at in place of all, where the motion takes another course among them than any rise; in these it is far
+    /// beyond the speed that is looked for.
+    fn shorter(&self, t: &[f64], x: &[f64], stop_speed: f64) -> Option<usize> {
+        let from = t.partition_point(|&t| t <= self.t0);
+        let mean = x.iter().sum::<f64>() / x.len() as f64;
+        let missed = |range: Range<usize>| {
+            let count = range.len() as f64;
+            (range.map(|k| self.residual(t[k], x[k] - mean).powi(2)).sum::<f64>() / count).sqrt()
+        };
+        // Angles in steps scatter by them, whatever their last digits.
+        let steps: Vec<f64> = x.windows(2).map(|two| (two[1] - two[0]).abs()).collect();
+        let digits = 1e-6 * steps.iter().copied().fold(0.0, f64::max);
+        let step = steps.into_iter().filter(|step| *step > digits).fold(f64::INFINITY, f64::min);
+        // What leaves early may seem to be at rest.
+        let rest: Vec<f64> = (0..from).map(|k| self.residual(t[k], x[k] - mean)).collect();
+        let scatter = (SIGMA_PER_MAD * mad(&rest)).max(step);
+        let half_s = 0.5 * (self.t0 + t[t.len() - 1]);
+        let half = t.partition_point(|&t| t <= half_s);
+        let shorter = half.max(from + FEWEST_RISEN).max(FEWEST);
+        let seen = x.get(shorter - 1).filter(|_| from >= 2 && shorter < x.len())?;
+        let travel = seen - self.level - mean;
+        let far = travel > FAST * stop_speed * (t[shorter - 1] - self.t0) && travel > CLEAR * scatter;
+        (far && missed(from..x.len()) > OTHER_COURSE * scatter).then_some(shorter)
     }
 
     fn residual(&self, t: f64, x: f64) -> f64 {

@@ -6,6 +6,7 @@ use super::{
     Rules, Sizes, Thresholds,
     motion::{Motion, Speed},
     peak_motion::Peaks,
+    unrounded::unrounded,
 };
 use crate::{
     math::median,
@@ -75,9 +76,10 @@ impl<'a> Signals<'a> {
         let planned_sigma = planned_sigma.unwrap_or(0.0);
         let planned_rad_s = given.unwrap_or_else(|| {
             let mut velocity = column();
+            let unrounded = planned_step.map(|step| unrounded(t_s, &pair.planned, segments, step));
             each_local_quadratic(
                 t_s,
-                &pair.planned,
+                unrounded.as_ref().unwrap_or(&pair.planned),
                 segments,
                 (planned_window_s, PLAN_POINTS),
                 |_, i, fit| {
@@ -172,13 +174,16 @@ pub fn planned_starts(planned: &Track, rules: &Rules) -> Vec<f64> {
     planned_motions(planned, rules).iter().filter(|m| m.starts()).map(|m| m.start_s).collect()
 }
 
-/// The first motion of a plan that is one step from sample to sample: when, s, and how far.
+/// The first motion of a plan that is one step from sample to sample: when, s, and how far. One that moves no joint, such as the last
+/// digit of a plan that was measured, is none.
 pub fn planned_step(planned: &Track, rules: &Rules) -> Option<(f64, f64)> {
     let (t_s, position) = (planned.t_s(), planned.position());
+    let least = rules.sizes(planned.kind()).moves_travel;
     planned_motions(planned, rules).iter().find_map(|motion| {
         let at = motion.step(position)?;
         let sudden = t_s[at] - t_s[at - 1] <= rules.min_motion_s;
-        sudden.then_some((t_s[at], (position[at] - position[at - 1]).abs()))
+        let distance = (position[at] - position[at - 1]).abs();
+        (sudden && distance >= least).then_some((t_s[at], distance))
     })
 }
 

@@ -10,6 +10,8 @@ use crate::series::Pair;
 
 /// So many middles are fitted: farther up no rise has the shape of its start.
 const MOST: usize = 6;
+/// Ramps of slow plans, s.
+const RAMPS: [Rise; 3] = [Rise::Ramp(0.4), Rise::Ramp(0.8), Rise::Ramp(1.6)];
 /// A change below this share of a step is none.
 const NONE: f64 = 0.01;
 /// What a rise of another shape lies off a middle by, in steps.
@@ -32,9 +34,16 @@ pub(super) fn onset(
     let steps = (rest_s / rules.onset_step_s).clamp(0.0, 2000.0).floor();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped above")]
     let departures = (0..=steps as usize).map(|k| first_s - k as f64 * rules.onset_step_s);
-    let each = departures.flat_map(|t0_s| RISES[..SMOOTH].iter().map(move |rise| (t0_s, *rise)));
+    let rises = || RISES[..SMOOTH].iter().chain(&RAMPS);
+    let each = departures.flat_map(|t0_s| rises().map(move |rise| (t0_s, *rise)));
     let likely = each.filter_map(|(t0_s, rise)| fit(&middles, (t0_s, rise), step, stop_speed));
-    let [low_s, at_s, high_s] = quantiles(likely.collect(), [0.025, 0.5, 0.975])?;
+    let mut likely: Vec<(f64, f64)> = likely.collect();
+    // Where no shape is that of the plan, each says less.
+    let least = likely.iter().map(|one| one.1).fold(f64::INFINITY, f64::min);
+    let freedom = middles.len().saturating_sub(3).max(1) as f64;
+    let unlike = (2.0 * least / freedom).max(1.0);
+    likely.iter_mut().for_each(|one| one.1 /= unlike);
+    let [low_s, at_s, high_s] = quantiles(likely, [0.025, 0.5, 0.975])?;
     Some(Onset { at_s, interval_s: [low_s - rules.onset_step_s, high_s + rules.onset_step_s] })
 }
 
@@ -125,5 +134,10 @@ fn fit(middles: &[Middle], (t0_s, rise): (f64, Rise), step: f64, stop_speed: f64
         return None;
     }
     let squares = risen().map(|(f, x, w)| w * (x - level - scale * f).powi(2)).sum::<f64>();
-    Some((t0_s + rise.passes_s(scale, stop_speed)?, 0.5 * squares / (step * step)))
+    // Beyond what is seen of it a rise goes on by its shape alone.
+    let passes_s = t0_s + rise.passes_s(scale, stop_speed)?;
+    middles
+        .last()
+        .is_some_and(|last| passes_s <= last.t_s)
+        .then_some((passes_s, 0.5 * squares / (step * step)))
 }

@@ -25,7 +25,9 @@ pub(super) fn transition(
     let end_s = until_s.min(planned_s + rules.transition_window_s);
     let times = &pair.t_s[planned.segment.clone()];
     let first = planned.segment.start + times.partition_point(|&t| t < planned_s);
-    let end = planned.segment.start + times.partition_point(|&t| t <= end_s);
+    // At the next start a plan that steps has its next value.
+    let whole = times.last().is_none_or(|last_s| *last_s <= end_s);
+    let end = planned.segment.start + times.partition_point(|&t| t < end_s || whole);
     // A motion has samples after its onset, so its window is never empty.
     let first = first.min(planned.segment.end - 1);
     let window = first..end.max(first + 1);

@@ -55,6 +55,11 @@ const WRONG: i64 = i64::MIN;
 /// Offsets of two topics that differ by less than this are one jump of one clock.
 const SAME_JUMP_NS: i64 = 250_000_000;
 
+/// Before this no clock is set, ns since 1970: one that leaps from before it to after it was set in between.
+const SET_NS: i64 = 1_000_000_000_000_000_000;
+/// A stamp and the recorder's clock that step back by amounts that differ by less were set together.
+const TOGETHER_NS: i64 = 1_000_000_000;
+
 /// Orders rows by stamp; `log_ns` is when the recorder received them, `known_offsets_ns` the jumps
 /// that another topic on the same clock showed.
 ///
@@ -69,7 +74,7 @@ pub fn continuous_clock(stamp_ns: &[i64], log_ns: &[i64], known_offsets_ns: &[i6
     let mut clock = Clock { unstamped: (n - order.len()) as u64, ..Clock::default() };
     let backward = |order: &[usize]| order.windows(2).filter(|w| stamp_ns[w[1]] < stamp_ns[w[0]]).count();
     let steps = backward(&order);
-    let own = stamp_ns[..n] == log_ns[..n];
+    let own = stamp_ns[..n] == log_ns[..n] || set_together(stamp_ns, log_ns);
     if steps > 0 && !own {
         let mut by_log = order.clone();
         by_log.sort_by_key(|&i| log_ns[i]);
@@ -77,7 +82,8 @@ pub fn continuous_clock(stamp_ns: &[i64], log_ns: &[i64], known_offsets_ns: &[i6
             order = by_log;
         }
     }
-    let sound = order.windows(2).all(|w| stamp_ns[w[0]] < stamp_ns[w[1]]);
+    let is_set = |a: usize, b: usize| stamp_ns[a] < SET_NS && stamp_ns[b] >= SET_NS;
+    let sound = order.windows(2).all(|w| stamp_ns[w[0]] < stamp_ns[w[1]] && !(own && is_set(w[0], w[1])));
     if sound && runs(&order, stamp_ns, log_ns).nth(1).is_none() {
         // Nothing to judge: nearly every log.
         clock.t_ns = order.iter().map(|&i| stamp_ns[i]).collect();
@@ -96,7 +102,8 @@ pub fn continuous_clock(stamp_ns: &[i64], log_ns: &[i64], known_offsets_ns: &[i6
             // Without a second clock only a step back over more than lateness is a jump.
             let step =
                 last_ns.map_or(0, |last| stamp_ns[run[0]].saturating_add(offset_ns).saturating_sub(last));
-            if step < -LATE_NS { step.saturating_sub(usual_step_ns(run, stamp_ns)) } else { 0 }
+            let was = epoch.last().is_some_and(|(_, before)| is_set(*before, run[0]));
+            if step < -LATE_NS || was { step.saturating_sub(usual_step_ns(run, stamp_ns)) } else { 0 }
         } else {
             head.saturating_add(offset_ns).saturating_sub(before)
         };
@@ -124,6 +131,27 @@ pub fn continuous_clock(stamp_ns: &[i64], log_ns: &[i64], known_offsets_ns: &[i6
     clock
 }
 
+/// Whether the stamps and the recorder's clock, in the order of the file, step back together, or leap together to a time that a clock
+/// has once it is set: the file alone then says what came after what.
+fn set_together(stamp_ns: &[i64], log_ns: &[i64]) -> bool {
+    let pairs = stamp_ns.windows(2).zip(log_ns.windows(2));
+    let steps = pairs.map(|(stamp, log)| {
+        let steps = [stamp, log].map(|w| w[1].saturating_sub(w[0]));
+        let is_set = stamp[0] < SET_NS && stamp[1] >= SET_NS && stamp[0] != 0;
+        (steps[0] < -LATE_NS || is_set) && (steps[0].saturating_sub(steps[1])).saturating_abs() < TOGETHER_NS
+    });
+    if !steps.fold(false, |any, together| any | together) {
+        return false;
+    }
+    // Chunks that a recorder wrote in another order make one even row of samples once they are sorted; a clock that was set leaves a
+    // hole, or times that it had before.
+    let mut sorted = stamp_ns.to_vec();
+    sorted.sort_unstable();
+    let steps = || sorted.windows(2).map(|w| w[1] - w[0]);
+    let usual = middle(steps());
+    steps().any(|step| step > 10 * usual.max(1) && step > LATE_NS || step < usual / 10)
+}
+
 /// Whether each stamp is set, later than the one before, and by no leap: then there is nothing to put in order.
 fn is_steady(stamp_ns: &[i64]) -> bool {
     let step =
@@ -142,7 +170,8 @@ fn runs<'a>(
     order.chunk_by(move |&a, &b| {
         let step = stamp_ns[b].saturating_sub(stamp_ns[a]);
         let passed = log_ns[b].saturating_sub(log_ns[a]);
-        step >= 0 && !(logged && step > LEAP_NS && passed < step / 2)
+        let was_set = stamp_ns[a] < SET_NS && stamp_ns[b] >= SET_NS;
+        step >= 0 && !was_set && !(logged && step > LEAP_NS && passed < step / 2)
     })
 }
 
@@ -247,6 +276,28 @@ mod tests {
         let clock = continuous_clock(&stamps([10, 30, 20, 40, 40, 50]), &stamps([1, 2, 3, 4, 5, 6]), &[]);
         assert_eq!(clock.rows, [0, 2, 1, 3, 5]);
         assert_eq!((clock.reordered, clock.duplicates, clock.cuts.len()), (1, 1, 0));
+    }
+
+    #[test]
+    fn where_both_clocks_are_set_time_goes_on_in_the_order_of_the_file() {
+        let due = |k: i64| 1_700_000_000_000 + 20 * k;
+        for set in [
+            |k: i64| if k < 50 { 0 } else { -3_600_000 },
+            |k: i64| if k < 50 { -1_699_999_000_000 } else { 0 },
+        ] {
+            let stamp_ns = stamps((0..100).map(|k| due(k) + set(k)));
+            let log_ns = stamps((0..100).map(|k| due(k) + set(k) + 3));
+            for log_ns in [&log_ns, &stamp_ns] {
+                let clock = continuous_clock(&stamp_ns, log_ns, &[]);
+                let first = due(0) + set(0);
+                assert_eq!(clock.t_ns, stamps((0..100).map(|k| first + 20 * k)));
+                assert_eq!((clock.cuts.as_slice(), clock.rows), ([50].as_slice(), (0..100).collect()));
+            }
+        }
+        // Chunks of 5 s in another order.
+        let order = || (0..250).chain(500..750).chain(250..500);
+        let clock = continuous_clock(&stamps(order().map(due)), &stamps(order().map(|k| due(k) + 3)), &[]);
+        assert_eq!((clock.t_ns, clock.cuts.len()), (stamps((0..750).map(due)), 0));
     }
 
     #[test]

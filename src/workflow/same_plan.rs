@@ -40,7 +40,7 @@ pub(super) fn found_at_s(plan: &Series, log: &Series, near_s: f64) -> Result<Opt
     let mut starts_s = near_s;
     let mut planned = cut(log, starts_s, starts_s + end_s)?;
     for _ in 0..ROUNDS {
-        let ahead_s = ahead_s(&planned, plan);
+        let ahead_s = ahead_s(&planned, plan).clamp(-MOST_AHEAD_S, MOST_AHEAD_S);
         starts_s -= ahead_s;
         planned = cut(log, starts_s, starts_s + end_s)?;
         if ahead_s.abs() < SETTLED_S {
@@ -77,8 +77,8 @@ pub(super) fn breaks_off_after_s(plan: &Series, other: &Series) -> Result<Option
     Ok(goes_on.then_some(to_s - from_s))
 }
 
-/// How far a plan is ahead of another of equal samples, s: the shift of least squares, at most [`MOST_AHEAD_S`].
-fn ahead_s(planned: &Series, plan: &Series) -> f64 {
+/// How far one is ahead of a plan of equal samples, s: the shift of least squares.
+pub(super) fn ahead_s(planned: &Series, plan: &Series) -> f64 {
     let (mut along, mut square) = (0.0, 0.0);
     for track in &plan.tracks {
         let Some(other) = planned.track(track.name()) else { continue };
@@ -89,7 +89,7 @@ fn ahead_s(planned: &Series, plan: &Series) -> f64 {
             square += speed * speed;
         }
     }
-    if square > 0.0 { (along / square).clamp(-MOST_AHEAD_S, MOST_AHEAD_S) } else { 0.0 }
+    if square > 0.0 { along / square } else { 0.0 }
 }
 
 /// Whether no angle differs by more than stamps do that are a little early or late.

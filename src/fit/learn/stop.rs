@@ -63,12 +63,14 @@ impl Stop {
 }
 
 fn at_end(planned: &[(f64, f64)], answers: &[Answer], side: f64) -> Option<Stop> {
-    let (first, others) = answers.split_first()?;
-    let stands = |run: &Answer| farthest(run.measured_rad.iter().map(|angle| side * angle));
-    let sent = |run: &Answer| farthest(run.sent.iter().map(|sent| side * sent.0));
-    let (mut came, mut pushed) = ([stands(first)?; 2], [sent(first)?; 2]);
-    for run in others {
-        for (range, now) in [(&mut came, stands(run)?), (&mut pushed, sent(run)?)] {
+    let (mut came, mut pushed) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
+    for run in answers {
+        let stands = farthest(run.measured_rad.iter().map(|angle| side * angle))?;
+        // What is sent before it is there pushes nothing.
+        let there =
+            run.sent.iter().zip(&run.measured_rad).filter(|(_, angle)| side * **angle > stands - NOISE_RAD);
+        let sent = farthest(there.map(|(sent, _)| side * sent.0)).unwrap_or(stands);
+        for (range, now) in [(&mut came, stands), (&mut pushed, sent)] {
             *range = [range[0].min(now), range[1].max(now)];
         }
     }
@@ -128,6 +130,20 @@ mod tests {
                 "{stop:?}"
             );
         }
+    }
+
+    #[test]
+    fn one_that_was_pushed_only_before_it_came_is_not() {
+        // A pump that joints share: it creeps to within its dead band, and what is sent has come back to the plan by then.
+        let planned = planned();
+        let answers = [0.0, 3.0].map(|by_deg| {
+            let early = |k: usize| if (250..450).contains(&k) { by_deg * DEGREE_RAD } else { 0.0 };
+            let sent: Vec<(f64, f64)> =
+                planned.iter().enumerate().map(|(k, at)| (at.0 + early(k), 0.0)).collect();
+            let late = |k: usize| planned[k.saturating_sub(120)].0.min(39.7 * DEGREE_RAD);
+            Answer { measured_rad: (0..planned.len()).map(late).collect(), sent, ..Answer::default() }
+        });
+        assert_eq!(Stop::of(&planned, &answers), None);
     }
 
     #[test]

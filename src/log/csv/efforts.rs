@@ -6,7 +6,7 @@ use super::{
     label::Label,
     layout::{Interface, Layout, Use, one_side},
     read::Cells,
-    signals::{Goes, moves_the_speed},
+    signals::{Goes, is_elsewhere, moves_the_speed},
 };
 use crate::{
     log::write::VALVE,
@@ -40,14 +40,27 @@ pub(super) fn as_signals(
     let clearest = found.iter().max_by(|a, b| a.1.speed.abs().total_cmp(&b.1.speed.abs()));
     let is_free =
         sent.iter().all(|one| !stated(one.column)) && layout.interfaces.iter().all(|one| one.name != VALVE);
-    let Some((column, goes)) = clearest.filter(|_| is_free && 2 * found.len() >= sent.len()) else {
-        return layout;
+    let elsewhere = |one: &&Use| {
+        let (sent, came) = both(one)?;
+        Some((one.column, is_elsewhere(sent, came)?))
+    };
+    let apart: Vec<(usize, f64)> = sent.iter().filter_map(elsewhere).collect();
+    let what = match clearest.filter(|_| is_free && 2 * found.len() >= sent.len()) {
+        Some((column, goes)) => format!(
+            "{:?}: the speed of their joints goes with them (correlation {:.2}), and the position does not ({:.2})",
+            head.names[*column], goes.speed, goes.position
+        ),
+        None => match apart.first().filter(|_| is_free && 2 * apart.len() >= sent.len()) {
+            Some((column, travel)) => format!(
+                "{:?}: they hardly change while their joints travel {travel:.1}, nowhere near them",
+                head.names[*column]
+            ),
+            None => return layout,
+        },
     };
     let message = format!(
-        "columns such as {:?}: the speed of their joints goes with them (correlation {:.2}), and the position does not \
-         ({:.2}); taken as signals to the valves, or as set speeds, and not as what a position is held against; --command \
-         JOINT=COLUMN,... takes them as set positions",
-        head.names[*column], goes.speed, goes.position
+        "columns such as {what}; taken as signals to the valves, or as set speeds, and not as what a position is held against; --command \
+         JOINT=COLUMN,... takes them as set positions"
     );
     remarks.add(Code::Guessed, sent.len() as u64, message);
     let signals =

@@ -8,6 +8,7 @@ use super::{
     column::{find, present},
     head::Head,
     label::{Label, is_place},
+    offered::offered,
     pairing::{Draft, Partners, by_last_part, plan_beside_measured, without_shared_words},
     unit::{Measure, Unit},
 };
@@ -243,9 +244,11 @@ fn joints(
                 return Err(CsvError::OddUnit { column: name.clone(), unit: unit.name });
             }
             let speed = drafts.iter().find(|draft| draft.quantity == Quantity::Velocity);
-            let why = speed.map_or_else(String::new, |draft| {
-                format!(" (column {:?} is a speed)", head.names[draft.column])
-            });
+            let offered = || {
+                offered(&head.names).map_or_else(String::new, |how| format!("; {how}, takes some of them"))
+            };
+            let why = speed
+                .map_or_else(offered, |draft| format!(" (column {:?} is a speed)", head.names[draft.column]));
             return Err(CsvError::NoJoints { why, present: present(&head.names) });
         }
         (true, false) => (&measured, "plan", "--planned"),

@@ -1,6 +1,6 @@
 //! Tells signals to valves, and set speeds, from set positions: the joint's speed goes with them, and its position does not.
 
-use crate::units::seconds_since;
+use crate::{math::range, units::seconds_since};
 
 /// Steps that rows are compared in, s; so many at most, from the first on, and fewer tell nothing.
 const STEP_S: f64 = 0.05;
@@ -21,6 +21,25 @@ const WITH_POSITION: f64 = 0.5;
 /// that of a late position by so much.
 const LATEST_POSITION: usize = 40;
 const CLEARER: f64 = 0.05;
+
+/// A joint that travels so many times as far as what was sent to it, and is never within this share of its travel of that, was sent
+/// no positions.
+const FARTHER: f64 = 8.0;
+const NEAR: f64 = 0.25;
+
+/// How far a joint travelled, where that and its distance from what was sent say that these are no positions. All `[rows]`.
+pub(super) fn is_elsewhere(sent: &[f64], came: &[f64]) -> Option<f64> {
+    let span = |values: &[f64]| {
+        let known = values.iter().filter(|value| value.is_finite());
+        let [low, high] = range(known.copied());
+        high - low
+    };
+    let (travel, span) = (span(came), span(sent));
+    let apart = sent.iter().zip(came).map(|(sent, came)| (sent - came).abs());
+    let nearest = apart.filter(|apart| apart.is_finite()).fold(f64::INFINITY, f64::min);
+    (travel > 0.0 && travel > FARTHER * span && nearest.is_finite() && nearest > NEAR * travel)
+        .then_some(travel)
+}
 
 /// How the motion of a joint correlates with what was sent to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,6 +106,18 @@ mod tests {
         let stamp_ns: Vec<i64> = (0..1200).map(|k| k * 50_000_000).collect();
         let of = |value: &dyn Fn(f64) -> f64| t_s.iter().map(|t_s| value(*t_s)).collect::<Vec<f64>>();
         moves_the_speed(&stamp_ns, &of(&sent), &of(&came))
+    }
+
+    #[test]
+    fn what_hardly_changes_far_from_a_joint_that_travels_is_no_set_position() {
+        let travels: Vec<f64> = (0..150).map(|k| 48.0 + 0.3 * f64::from(k)).collect();
+        let duty: Vec<f64> = (0..150).map(|k| if k > 40 { 4.9 } else { 8.9 }).collect();
+        assert!(is_elsewhere(&duty, &travels).is_some());
+        // A joint that sinks from its set value, one that hunts about it, and one that stands.
+        assert_eq!(is_elsewhere(&[48.0; 150], &travels), None);
+        let hunts: Vec<f64> = (0..150).map(|k| 8.9 + f64::from(k % 3) - 1.0).collect();
+        assert_eq!(is_elsewhere(&[8.9; 150], &hunts), None);
+        assert_eq!(is_elsewhere(&duty, &[48.0; 150]), None);
     }
 
     #[test]

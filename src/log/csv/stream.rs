@@ -7,6 +7,7 @@ use ::csv::ByteRecord;
 use super::{
     CsvError, CsvOptions, CsvRun, Form, Quantity, Understood,
     again::is_another_header,
+    decimal_mark::DecimalMark,
     expression,
     number::number,
     only::{self, Only},
@@ -52,6 +53,7 @@ pub struct TableStream {
     ends: Ends,
     /// A header with other columns came: what is below it is not read.
     over: bool,
+    mark: DecimalMark,
 }
 
 /// Rows that are not as they should be.
@@ -91,6 +93,7 @@ impl TableStream {
         if let Some(column) = positions.map(|one| one.column).find(guessed) {
             return Err(CsvError::NoUnit { column: form.head.names[column].clone() });
         }
+        let mark = DecimalMark::of(&text, &form, options);
         Ok(Self {
             first_line: form.head.first_line,
             only,
@@ -107,6 +110,7 @@ impl TableStream {
             counts: Counts::default(),
             ends: Ends::default(),
             over: false,
+            mark,
         })
     }
 
@@ -208,6 +212,8 @@ impl TableStream {
             return;
         }
         let cell = |column: usize| record.get(column).unwrap_or_default();
+        self.mark.settle(&mut self.form, record);
+        let dialect = self.form.dialect;
         let Some(ns) =
             self.form.time.ns(self.rows + cells.stamp_ns.len() as u64, cell, dialect.decimal_comma)
         else {

@@ -42,7 +42,7 @@ pub(super) fn of_clock(topic: &str, base: TimeBase, clock: &Clock, remarks: &mut
         clock.cuts.len() as u64,
         format!(
             "jumps of the {base} clock in {topic}, by up to {jump_s:.3} s; the run is split there and \
-             time goes on by the recorder's clock"
+             time goes on by the recorder's clock, or where that jumped, too, by the order of the file"
         ),
     );
 }

@@ -71,6 +71,17 @@ pub(super) fn choose(extracted: &Extracted, options: &ReadOptions) -> Result<Cho
     }
 }
 
+/// Names as their messages have them: the caller may give these to a topic that has none.
+fn names_of(all: &[Candidate]) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for name in all.iter().flat_map(|candidate| &candidate.joints) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    names
+}
+
 const PLANNED: &str = "planned";
 pub(super) const MEASURED: &str = "measured";
 
@@ -93,11 +104,15 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
     // The first of the nearest.
     let first = alike.rev().max_by_key(|c| near(c)).or(best);
     let Some(first) = first else {
-        let list = |all: &[Candidate]| {
-            let names: BTreeSet<&str> = all.iter().flat_map(|c| &c.joints).map(String::as_str).collect();
-            names.into_iter().collect::<Vec<_>>().join(", ")
+        let [planned, measured] = [names_of(&planned), names_of(&measured)];
+        let counted = |names: &[&str]| names.iter().zip(1..).all(|(name, k)| *name == format!("joint_{k}"));
+        let given = match planned.len() == measured.len() {
+            true if counted(&planned) => measured.join(","),
+            true if counted(&measured) => planned.join(","),
+            _ => "JOINT,JOINT,...".to_owned(),
         };
-        return Err(LogError::NoCommonJoint { planned: list(&planned), measured: list(&measured) });
+        let [planned, measured] = [planned, measured].map(|names| names.join(", "));
+        return Err(LogError::NoCommonJoint { planned, measured, given });
     };
     // Several controllers each plan joints of their own: all of one kind are used, and others of joints that are measured.
     let explicit = !options.planned.is_empty();

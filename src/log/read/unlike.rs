@@ -34,12 +34,31 @@ const STEADY: f64 = 1.1;
 /// The plan of another joint is followed if its error is less than this share of its motion, and of the own error.
 const OTHERS: f64 = 0.2;
 
+/// Two joints whose names are exchanged move with each other's plan by this correlation at least, with their own by that at most, and
+/// miss each other's by this share of what they miss of their own at most.
+const WITH_EACH_OTHER: f64 = 0.8;
+const WITH_OWN: f64 = 0.7;
+const LESS: f64 = 0.6;
+/// Plans that move by this share of what is small tell which they are.
+const TELLS: f64 = 0.2;
+
 /// Positions of plan and measurement at the same instants.
 type Both = Vec<[f64; 2]>;
 
 /// Remarks joints whose measurement looks like their plan in another frame.
 pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+    let exchanged = exchanged(planned, measured);
+    for [one, other] in &exchanged {
+        let message = format!(
+            "{one} follows the plan of {other}, and {other} that of {one}, better than their own: are the names or columns of two \
+             joints exchanged, or the names given in another order?"
+        );
+        remarks.add(Code::UnlikePlan, 1, message);
+    }
     for track in &planned.tracks {
+        if exchanged.iter().flatten().any(|name| name == track.name()) {
+            continue;
+        }
         let Some(came) = measured.track(track.name()).filter(|came| came.kind() == track.kind()) else {
             continue;
         };
@@ -68,6 +87,34 @@ pub(super) fn of_command(planned: &Series, command: Option<&Command>, topic: &st
             remarks.add(Code::UnlikePlan, 1, message);
         }
     }
+}
+
+/// Pairs of joints of which each moves with the plan of the other, and not with its own.
+fn exchanged(planned: &Series, measured: &Series) -> Vec<[String; 2]> {
+    let found = |plan: &Track, came: &Track| {
+        let found = (plan.kind() == came.kind()).then(|| Alike::of(&both(plan, came))).flatten();
+        found.filter(|found| found.motion > TELLS * SMALL[usize::from(!plan.turns())])
+    };
+    let of_joint =
+        |plan: &'_ Track| Some((plan.name().to_owned(), found(plan, measured.track(plan.name())?)?));
+    let astray = planned.tracks.iter().filter_map(of_joint).filter(|(_, own)| own.correlation < WITH_OWN);
+    let astray: Vec<(String, Alike)> = astray.collect();
+    let follows = |(_, own): &(String, Alike), came: &str, plan: &str| {
+        let other = planned.track(plan).zip(measured.track(came)).and_then(|(plan, came)| found(plan, came));
+        other.is_some_and(|other| {
+            other.correlation > WITH_EACH_OTHER && other.rms_error < LESS * own.rms_error
+        })
+    };
+    let mut pairs: Vec<[String; 2]> = Vec::new();
+    for (k, one) in astray.iter().enumerate() {
+        let free = |other: &&(String, Alike)| !pairs.iter().flatten().any(|name| *name == other.0);
+        let each =
+            |other: &&(String, Alike)| follows(one, &one.0, &other.0) && follows(other, &other.0, &one.0);
+        if let Some(other) = astray[k + 1..].iter().filter(free).find(each).filter(|_| free(&one)) {
+            pairs.push([one.0.clone(), other.0.clone()]);
+        }
+    }
+    pairs
 }
 
 fn of_joint<'a>(
@@ -225,8 +272,18 @@ mod tests {
                 "{told}: {found:?}"
             );
         }
-        let found = remarks(of_stick, plan);
-        assert!(found.len() == 2 && found[0].starts_with("boom follows the plan of stick"), "{found:?}");
+        let late: [fn(f64) -> f64; 2] = [|t| of_stick(t - 0.8), |t| plan(t - 0.8)];
+        for [boom, stick] in [[of_stick, plan], late] {
+            let found = remarks(boom, stick);
+            let told =
+                |one: &String| one.starts_with("boom follows the plan of stick, and stick that of boom");
+            assert!(found.len() == 1 && found.iter().all(told), "{found:?}");
+        }
+        let found = remarks(of_stick, of_stick);
+        assert!(
+            found.len() == 1 && found[0].starts_with("boom follows the plan of stick and not"),
+            "{found:?}"
+        );
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod tables;
 pub(super) use page::fitted;
 pub(crate) use page::page;
 pub(crate) use tables::document;
+pub(in crate::render) use tables::shared;
 
 use super::metric::{Units, on_paper, unit};
 use crate::{

@@ -4,11 +4,11 @@ use super::Shown;
 use crate::{
     fit::{
         Estimated, Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LEAST_SMOOTH_SKILL, LeftOut,
-        MOST_UNEXPLAINED,
+        MOST_UNEXPLAINED, SharedJoint, SharedLimit,
     },
     render::{
         kit::{Column, Document, Id, Section, Sentence, Table, counted, some_of},
-        metric::{Units, position},
+        metric::{Units, number, position},
     },
     replay::Dimension,
     workflow::fit::{Fitted, torque::JointTorque},
@@ -129,6 +129,28 @@ fn table(fit: &Fit, columns: &[Shown], skill: bool) -> Table {
     Table::of(columns.collect::<Vec<_>>(), fit.joints.iter().map(row))
 }
 
+/// What joints share, and what each makes alone.
+pub(in crate::render) fn shared(limit: &SharedLimit) -> String {
+    let names: Vec<&str> = limit.joints.iter().map(|joint| joint.name.as_str()).collect();
+    let alone = |joint: &SharedJoint| {
+        let value = position(joint.kind, joint.alone_rad_s);
+        let interval = joint.interval_rad_s.map_or(String::new(), |[low, high]| {
+            let shown = |rad_s| number(Dimension::Position, joint.kind, rad_s);
+            format!(" ({} to {})", shown(low), shown(high))
+        });
+        format!("{} {value}/s{interval}", joint.name)
+    };
+    format!(
+        "{} share a limit, as those that one pump feeds do. With all of it {}; where they move together each makes its part of that, and \
+         so they do for {:.0} % of the time in which two or more move ({:.1} s in {}).",
+        names.join(", "),
+        limit.joints.iter().map(alone).collect::<Vec<_>>().join(", "),
+        100.0 * limit.share,
+        limit.duration_s,
+        counted(limit.stretches, "part")
+    )
+}
+
 /// What the numbers are good for, and what would tell the rest.
 fn trust(fitted: &Fitted) -> Vec<Sentence> {
     let fit = &fitted.fit;
@@ -146,6 +168,7 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         fit.margin_starts,
         fit.peak_margin
     )];
+    lines.extend(fit.shared.as_ref().map(shared));
     let all = || LOOP.iter().chain(&LIMITS);
     let open: Vec<String> = all()
         .filter_map(|shown| {

@@ -8,7 +8,7 @@ use crate::{
     },
     replay::Rules,
     workflow::fleet::{
-        Drift, Effect, GateResult, Gated, JointEffect, JointTrend, LevelStep, Worst, WorstJoint,
+        Change, Drift, Effect, GateResult, Gated, JointEffect, JointTrend, LevelStep, Worst, WorstJoint,
     },
 };
 
@@ -72,7 +72,29 @@ pub(super) fn stepped(trend: &JointTrend, step: &LevelStep) -> String {
     )
 }
 
+/// What the level did before the last of its changes, in order; empty where there is but one.
+fn before(trend: &JointTrend) -> String {
+    let unit = shown_unit(&trend.unit);
+    let Some((_, earlier)) = trend.changes.split_last().filter(|(_, earlier)| !earlier.is_empty()) else {
+        return String::new();
+    };
+    let one = |change: &Change| {
+        let days = [&change.after, &change.by].map(|at| at.as_deref().map_or(NONE, day));
+        let by = shown_change(&trend.unit, change.change);
+        let how = match change.per_day {
+            Some((slope, _)) => format!(" evenly, {} {unit} a day", shown_change(&trend.unit, slope)),
+            None => String::new(),
+        };
+        format!("{by} {unit} from {} to {}{how}", days[0], days[1])
+    };
+    format!(" Before that: {}.", earlier.iter().map(one).collect::<Vec<_>>().join("; "))
+}
+
 pub(in crate::render) fn said(trend: &JointTrend) -> String {
+    said_last(trend) + &before(trend)
+}
+
+fn said_last(trend: &JointTrend) -> String {
     if let Some(step) = step_of(trend) {
         return format!(
             "{} {}: the {} changes at once{}, by {}; q = {}.",
@@ -119,8 +141,15 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
     let note = "Each start is compared with the same start of the same plan. q: share of false discoveries if this trend \
                 and all surer ones count as found; found: q below 5 %, and three robust deviations from what is \
                 usual where ten joints or more tell that. A step is a level that changes between two runs and stays; it \
-                stands in place of a trend where it explains the levels better.";
+                stands in place of a trend where it explains the levels better. Where a level changed more than once, a day's change \
+                is that of its last stretch. What four machines or more did alike at the same time is taken off.";
     section = section.with(Sentence::note(note));
+    if found.iter().any(|trend| !trend.less_common) {
+        section = section.with(Sentence::note(
+            "What weather, oil and work do to all joints is not taken off everywhere, for fewer than four other machines tell it: where all \
+             joints of a machine change alike, that may be why.",
+        ));
+    }
     let unsure = drift.trends.iter().filter(|trend| !trend.found && trend.runs < drift.fewest_runs).count();
     section = section.with_all(not_judged(drift.too_few + unsure, drift.fewest_runs));
     Document::default().with(section).remarked(&drift.remarks)
@@ -203,15 +232,26 @@ pub(crate) fn effect(effect: &Effect, most: usize) -> Document {
     section = section.with_all(found.into_iter().take(most).map(|one| {
         let became = if one.change > 0.0 { "larger" } else { "smaller" };
         let unit = shown_unit(&one.unit);
+        let others = match one.usual_change {
+            Some(_) if one.of > 1 => format!("change {} of {} machines", one.rank, one.of),
+            Some(_) => "less what other joints of other machines did".to_owned(),
+            None => "no season is taken off, for fewer than three other machines tell it".to_owned(),
+        };
+        let since = one.since.as_deref().map(|since| format!("since {}", day(since)));
+        let until = one.until.as_deref().map(|until| format!("until {}", day(until)));
+        let part: Vec<String> = since.into_iter().chain(until).collect();
+        let part = if part.is_empty() {
+            String::new()
+        } else {
+            format!("; of runs {}, for its level changed by itself beyond", part.join(" and "))
+        };
         Sentence::finding(format!(
-            "{}: the {} became {became} by {} {unit} ({} {unit}, 95 %), from {} {unit}; change {} of {} machines; q = {}.",
+            "{}: the {} became {became} by {} {unit} ({} {unit}, 95 %), from {} {unit}; {others}{part}; q = {}.",
             one.joint,
             name(one.metric),
             shown_change(&one.unit, one.change.abs()).trim_start_matches('+'),
             interval(&one.unit, one.interval_95),
             shown(&one.unit, one.before),
-            one.rank,
-            one.of,
             probability(one.q_value),
         ))
     }));
@@ -270,7 +310,12 @@ fn verdict(gate: &GateResult, fewest_runs: usize) -> Sentence {
         },
         Some(worst) => {
             let grows = match step_of(worst) {
-                Some(step) => stepped(worst, step),
+                // A limit is on what a day brings.
+                Some(step) => format!(
+                    "{} {unit} a day: {}",
+                    shown_change(&worst.unit, worst.growth_per_day()),
+                    stepped(worst, step)
+                ),
                 None => format!("{} {unit} a day", shown_change(&worst.unit, worst.slope_per_day)),
             };
             let sure = if worst.found { "found" } else { "not proven" };

@@ -139,9 +139,13 @@ pub(in crate::render) fn shown(unit: &str, value: f64) -> String {
     }
 }
 
-/// The same of a difference, with a decimal more for times.
+/// The same of a difference, with more decimals: what a day brings is small.
 fn shown_change(unit: &str, value: f64) -> String {
-    let text = if shown_unit(unit) == "ms" { format!("{:.1}", 1e3 * value) } else { shown(unit, value) };
+    let text = match shown_unit(unit) {
+        "ms" => format!("{:.1}", 1e3 * value),
+        "mm" => format!("{:.3}", 1e3 * value),
+        _ => deg(value),
+    };
     super::kit::signed(value, |_| text.clone())
 }
 

@@ -240,6 +240,20 @@ fn chart(trend: &JointTrend) -> Chart {
             answers::stepped(trend, step),
         ))
     });
+    let course = || {
+        let at = trend.line.iter().map(|[at, _]| rounded(at - first)).collect();
+        let line = trend.line.iter().map(|[_, level]| rounded(level * scale)).collect();
+        let what = trend.changes.last().map(|change| {
+            let unit = shown_unit(unit);
+            let by = |value| shown_change(&trend.unit, value);
+            change.per_day.map_or_else(
+                || format!("{} {unit} at last", by(change.change)),
+                |(slope, _)| format!("{} {unit} a day at last", by(slope)),
+            )
+        });
+        (at, line, what.unwrap_or_default())
+    };
+    let step = if trend.line.is_empty() { step } else { Some(course()) };
     let (guide, at, line, what) = step.map_or_else(
         || {
             let line = ends.map(|x| rounded(y0 + trend.slope_per_day * scale * (x - x0))).to_vec();

@@ -4,6 +4,7 @@ use crate::{
     fit::{Character, LEAST_SKILL},
     plan::Limit,
     render::{
+        fit::shared,
         kit::{Block, Check, Id, Mark, Section, Sentence, counted, mm, optional, share},
         metric::position,
         plan,
@@ -78,6 +79,7 @@ fn short(level: Level, finding: &Finding) -> String {
             format!("joints {what} ({})", doubtful.collect::<Vec<_>>().join(", "))
         }
         Finding::TooFast(of) => format!("the plan of {} is faster than the joint", of.joint),
+        Finding::Together { .. } => "the plan asks for more than what its joints share".to_owned(),
         Finding::Promise { .. } => "more error came than was promised".to_owned(),
         Finding::Outlook { .. } => "a larger error is expected".to_owned(),
         Finding::Whole { .. } => {
@@ -102,6 +104,7 @@ fn name(finding: &Finding) -> &'static str {
         Finding::Rest { .. } => "Rest at end",
         Finding::Limits { .. } => "Limits",
         Finding::TooFast(_) => "Too fast",
+        Finding::Together { .. } => "Together",
         Finding::Trust { .. } => "Model",
         Finding::Promise { .. } => "Last promise",
         Finding::Outlook { .. } => "Next error",
@@ -153,6 +156,11 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
             position(*kind, *planned_rad_s),
             position(*kind, *own),
             position(*kind, *most)
+        ),
+        Finding::Together { limit, asked, at_s } => format!(
+            "{} The plan asks for {asked:.2} times what they share, most at {at_s:.1} s: no command mends that, more time or fewer joints at \
+             once do.",
+            shared(limit)
         ),
         Finding::Trust { joints } => trust(joints),
         Finding::Promise { log, promised, measured_mean_peak_rad } => format!(

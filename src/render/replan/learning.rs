@@ -45,6 +45,7 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
         KeepReason::ExpectedWorse { expected_rad } => {
             format!("; another correction is expected to give {}.", shown(*expected_rad))
         }
+        KeepReason::Undone { before_rad } => return Some(undone(replanned, shown(*before_rad), last)),
     };
     let joints = replanned.command.iter().flat_map(|command| &command.joints);
     let other = joints.filter(|joint| matches!(joint.step, Step::Kept { from, .. } if from != *run));
@@ -57,12 +58,22 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
     let then = match replanned.past.runs.last().filter(|_| is_lost) {
         Some(run) => format!(
             " If the machine has drifted since, a correction learnt from the newest run alone may do better, `hydrotrace replan {} \
-             -o anew.mcap`.",
+             --keep-plan -o anew.mcap`.",
             argument(&run.path)
         ),
         None => repeats(replanned).unwrap_or_default().to_owned(),
     };
     Some(kept + &why + &but + &then)
+}
+
+/// What to do where all that a command gained was undone in the newest run.
+fn undone(replanned: &Replanned, before: String, now: String) -> String {
+    let log = replanned.past.runs.last().map_or("the last run", |run| &run.log);
+    format!(
+        "Look at the machine, then send the command of {log} again: it gave a mean peak of {before} before and {now} there, about as \
+         much as no correction. A pump, a load, a valve or a hand can do that once, and one such run teaches nothing; if the next \
+         one is alike, give both, and another command is learnt from them."
+    )
 }
 
 /// Whether a run had clearly less than that.

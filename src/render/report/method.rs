@@ -93,7 +93,7 @@ pub(super) fn method(report: &Report) -> Option<Section> {
         fact(
             "delay",
             format!(
-                "time between plan and joint passing the same speed. never: within the window the joint covers less than \
+                "time between plan and joint passing the same speed. never: the joint has no start, and within the window it covers less than \
                  {:.0} % of the planned travel. creeps: it covers more, but moved before or crept into the motion, so its start \
                  has no time. unclear: the planned motion is too small for the noise, or the next start comes within {:.0} s. Only \
                  never counts as unanswered; creeps and unclear count as undated",

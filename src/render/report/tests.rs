@@ -168,7 +168,8 @@ fn a_fit_shows_its_numbers_intervals_and_what_was_never_reached() {
         valve_dead_band: None,
         model,
     };
-    let fit = Fit { joints: vec![joint], left_out: vec![], peak_margin: 1.25, margin_starts: 12 };
+    let fit =
+        Fit { joints: vec![joint], left_out: vec![], peak_margin: 1.25, margin_starts: 12, shared: None };
     let page = report_page("a", &report("gaps.mcap"), Some(&fit), 60, &[]);
     for text in ["Fitted machine", "200 (180..220)", "&gt;= 14.3", "0.88"] {
         assert!(page.contains(text), "{text}");

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{FitFailure, Fitted, FittedRun, LIMITS_FORMAT, torque::JointTorque};
 use crate::{
     document::{PROGRAM, pretty},
-    fit::{Fit, JointFit, LEAST_SKILL, LeftOut},
+    fit::{Fit, JointFit, LEAST_SKILL, LeftOut, SharedLimit},
     input_file,
     remark::Remark,
     series::JointKind,
@@ -35,6 +35,9 @@ pub struct FitDocument {
     pub peak_margin: f64,
     /// Number of held-out starts behind the margin.
     pub margin_starts: usize,
+    /// The limit that joints share, such as a pump, where the logs show one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shared: Option<SharedLimit>,
     /// Least held-out R2 for which commands are made.
     pub least_held_out_r2: f64,
     /// Doubts; any makes the exit code 3.
@@ -44,7 +47,7 @@ pub struct FitDocument {
 impl FitDocument {
     /// Of a fit.
     pub fn of(fitted: &Fitted) -> Self {
-        let Fit { joints, left_out, peak_margin, margin_starts } = fitted.fit.clone();
+        let Fit { joints, left_out, peak_margin, margin_starts, shared } = fitted.fit.clone();
         Self {
             format: FORMAT.to_owned(),
             program: PROGRAM.to_owned(),
@@ -54,6 +57,7 @@ impl FitDocument {
             left_out,
             peak_margin,
             margin_starts,
+            shared,
             least_held_out_r2: LEAST_SKILL,
             remarks: fitted.remarks.as_slice().to_vec(),
         }

@@ -10,20 +10,16 @@ use std::{collections::BTreeMap, path::Path};
 use serde::{Deserialize, Serialize};
 
 use super::{
+    common::Commons,
     failure::FleetFailure,
     found::judge,
-    history::{By, Event, Filter, History, Scatters, Values},
-    joint_trend::{FEWEST_RUNS, JointTrend, Level, MOST_FALSE},
+    history::{By, Filter, History, Scatters, Values},
+    joint_trend::{FEWEST_RUNS, JointTrend, MOST_FALSE},
+    leveled::Leveled,
     map::{Map, maps},
     one_way::{by_direction, clearest},
-    run::{Run, date, days},
-    stepped::best_step,
 };
-use crate::{
-    document::PROGRAM,
-    math::{begins, column_levels, median, row_weights, step_scatter, theil_sen, trend, weighted_median},
-    remark::Remarks,
-};
+use crate::{document::PROGRAM, remark::Remarks};
 
 /// What the format is called.
 const FORMAT: &str = "hydrotrace.fleet-drift.v1";
@@ -55,46 +51,6 @@ pub struct Drift {
     pub remarks: Remarks,
 }
 
-/// The starts that enough runs have, as rows by run, with what each row says; and those runs. A start that scatters on
-/// all machines says little, however quiet it was on this one. Peak errors grow and scatter in proportion, those of a fast start
-/// by more: so each row is scaled to the level of the middle one, or the slowest start would say it all.
-pub(super) fn matrix(
-    metric: By,
-    values: &Values,
-    fewest: usize,
-    (joint, scatters): (&str, &Scatters),
-) -> (Vec<usize>, Vec<Vec<f64>>, Vec<f64>) {
-    let often = || values.values().filter(|of_runs| of_runs.len() >= fewest);
-    let mut runs: Vec<usize> = often().flat_map(|of_runs| of_runs.keys().copied()).collect();
-    runs.sort_unstable();
-    runs.dedup();
-    let row = |of_runs: &BTreeMap<usize, f64>| {
-        runs.iter().map(|run| of_runs.get(run).copied().unwrap_or(f64::NAN)).collect()
-    };
-    let mut rows: Vec<Vec<f64>> = often().map(row).collect();
-    let events = values.iter().filter(|(_, of_runs)| of_runs.len() >= fewest);
-    let scatter = |(event, of_runs): (&Event, &BTreeMap<usize, f64>)| {
-        let own = step_scatter(of_runs.values().copied());
-        let usual = scatters.get(&(joint.to_owned(), event.clone())).copied();
-        own.into_iter().chain(usual).reduce(f64::max)
-    };
-    let mut scatters: Vec<Option<f64>> = events.map(scatter).collect();
-    if metric == By::Peak {
-        let level = |row: &Vec<f64>| median(row.iter().copied().filter(|value| value.is_finite()).collect());
-        let levels: Vec<f64> = rows.iter().map(level).collect();
-        let middle = median(levels.clone());
-        for ((row, scatter), level) in rows.iter_mut().zip(&mut scatters).zip(levels) {
-            let share = if level > 0.0 { middle / level } else { 1.0 };
-            for value in row.iter_mut() {
-                *value *= share;
-            }
-            *scatter = scatter.map(|scatter| scatter * share);
-        }
-    }
-    let weights = row_weights(&scatters);
-    (runs, rows, weights)
-}
-
 /// The trends of what the filter lets through, judged against the whole fleet; `by`: of one metric only.
 ///
 /// # Errors
@@ -105,31 +61,41 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
     let wanted = |machine: &str| filter.machine.as_ref().is_none_or(|own| own == machine);
     let scatters: BTreeMap<By, Scatters> = by.iter().map(|by| (*by, history.scatters(*by))).collect();
     let none = Scatters::new();
-    let mut trends = Vec::new();
+    let mut joints = Vec::new();
     let mut too_few = 0;
     for ((axis, metric), values) in &history.values {
         if !by.contains(metric) {
             continue;
         }
         let scatters = (axis.joint.as_str(), scatters.get(metric).unwrap_or(&none));
-        let named = |found: JointTrend, direction: Option<i8>| JointTrend {
-            machine: axis.machine.clone(),
-            joint: axis.joint.clone(),
-            direction,
-            metric: *metric,
-            unit: if *metric == By::Peak { axis.unit.clone() } else { "s".to_owned() },
-            ..found
+        let leveled = |values: &Values, direction| {
+            let found = Leveled::of(*metric, &history.runs, values, scatters)?;
+            let unit = if *metric == By::Peak { axis.unit.clone() } else { "s".to_owned() };
+            Some(Leveled {
+                machine: axis.machine.clone(),
+                joint: axis.joint.clone(),
+                direction,
+                unit,
+                ..found
+            })
         };
-        let Some(found) = joint_trend(*metric, &history.runs, values, scatters) else {
+        let Some(found) = leveled(values, None) else {
             too_few += usize::from(wanted(&axis.machine));
             continue;
         };
-        trends.push(named(found, None));
+        joints.push(found);
         for (direction, own) in by_direction(&history, axis, values) {
-            let found = joint_trend(*metric, &history.runs, &own, scatters);
-            trends.extend(found.map(|found| named(found, Some(direction))));
+            joints.extend(leveled(&own, Some(direction)));
         }
     }
+    let commons = Commons::of(&joints);
+    let mut trends: Vec<JointTrend> = joints
+        .into_iter()
+        .filter_map(|joint| {
+            let common = commons.at(&joint);
+            joint.less(common).trend()
+        })
+        .collect();
     judge(&mut trends);
     let fewest_runs = fewest_runs(trends.len());
     let mut trends = clearest(trends);
@@ -161,45 +127,19 @@ fn fewest_runs(trends: usize) -> usize {
         .unwrap_or(FEWEST_RUNS)
 }
 
-/// The trend without its names; `None` for too few runs.
-fn joint_trend(metric: By, runs: &[Run], values: &Values, scatters: (&str, &Scatters)) -> Option<JointTrend> {
-    let (own, rows, weights) = matrix(metric, values, FEWEST_RUNS, scatters);
-    let at: Vec<f64> = own.iter().filter_map(|run| runs.get(*run)).map(days).collect();
-    let points = |row: &[f64]| -> Vec<(f64, f64)> {
-        at.iter().copied().zip(row.iter().copied()).filter(|(_, value)| value.is_finite()).collect()
-    };
-    let slopes = rows.iter().map(|row| theil_sen(&points(row))).zip(weights.iter().copied());
-    let slope = weighted_median(slopes.collect());
-    let levels = points(&column_levels(&rows, &weights, own.len()));
-    let found = trend(&levels).filter(|_| levels.len() >= FEWEST_RUNS && slope.is_finite())?;
-    let [low, high] = found.interval;
-    let usual = median(rows.iter().flatten().copied().filter(|value| value.is_finite()).collect());
-    let level = |(at_days, level): &(f64, f64)| {
-        let run = own.iter().filter_map(|run| runs.get(*run)).find(|run| (days(run) - at_days).abs() <= 0.0);
-        let log = run.map(|run| run.log.clone()).unwrap_or_default();
-        Level { at_days: *at_days, value: level + usual, log, page: None }
-    };
-    let early = rows.iter().flat_map(|row| points(row).into_iter().take(3)).map(|(_, value)| value);
-    Some(JointTrend {
-        slope_per_day: slope,
-        interval_95: [low.min(slope), high.max(slope)],
-        p_value: found.p,
-        q_value: 1.0,
-        step: best_step(&levels),
-        since: begins(&levels).and_then(date),
-        starts: rows.len(),
-        runs: levels.len(),
-        days: levels.last()?.0 - levels.first()?.0,
-        level: median(early.collect()),
-        levels: levels.iter().map(level).collect(),
-        ..JointTrend::default()
-    })
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::collections::BTreeMap;
+
+    use super::{
+        super::{history::Event, run::Run},
+        *,
+    };
     use crate::schema::is_written_and_read;
+
+    fn joint_trend(by: By, runs: &[Run], values: &Values, scatters: (&str, &Scatters)) -> Option<JointTrend> {
+        Leveled::of(by, runs, values, scatters)?.trend()
+    }
 
     /// Ten runs a day apart, eight starts of their own level; a start grows by 2 a day from day four on and is lost late.
     fn values(slope: f64) -> (Vec<Run>, Values) {

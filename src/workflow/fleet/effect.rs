@@ -4,22 +4,22 @@
 //! the change minus the mean before it, less what the other machines changed by in the same time (their median). It is
 //! known no better than the machine's own runs scatter, nor than the other machines change without any reason.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{collections::BTreeSet, path::Path};
 
 use serde::{Deserialize, Serialize};
 
 use super::{
-    drift::matrix,
     failure::FleetFailure,
-    history::{Axis, By, Filter, History, Scatters, Values},
+    history::{Axis, By, Filter, History, Values},
     joint_trend::MOST_FALSE,
     note::{Intervention, Note, notes},
     run::date,
+    sides::Sides,
     window::Window,
 };
 use crate::{
     document::PROGRAM,
-    math::{SIGMA_PER_MAD, column_levels, difference, false_discovery, mad, median},
+    math::{SIGMA_PER_MAD, difference, false_discovery, mad, median},
     remark::Remarks,
     units::SECONDS_PER_DAY,
 };
@@ -80,6 +80,12 @@ pub struct JointEffect {
     pub change: f64,
     /// Its 95 % interval.
     pub interval_95: [f64; 2],
+    /// The first run before that is compared, UTC, where the level had changed before that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub since: Option<String>,
+    /// The last run after that is compared, UTC, where the level changed again after that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<String>,
     /// What the rest of the fleet changed by in the same time, median over machines; null for too few machines.
     pub usual_change: Option<f64>,
     /// Among all machines with this joint, how many changed as much or more, this one included.
@@ -94,52 +100,6 @@ pub struct JointEffect {
     pub found: bool,
     /// Starts that were followed.
     pub starts: usize,
-}
-
-/// Levels of the runs of one machine before and after, and the median value before.
-struct Sides {
-    before: Vec<f64>,
-    after: Vec<f64>,
-    level: f64,
-    starts: usize,
-}
-
-impl Sides {
-    fn of(
-        history: &History,
-        metric: By,
-        scatters: (&str, &Scatters),
-        values: &Values,
-        window: Window,
-    ) -> Self {
-        let is_after = |run: &usize| history.runs.get(*run).is_some_and(|run| window.is_after(run));
-        let tells = |run: &usize| history.runs.get(*run).is_some_and(|run| window.holds(run));
-        // A start that one side lacks tells nothing of the change.
-        let both = |of: &BTreeMap<usize, f64>| {
-            let after = of.keys().filter(|run| is_after(run)).count();
-            after > 0 && after < of.len()
-        };
-        let told = values.iter().map(|(event, of)| {
-            let of = of.iter().filter(|(run, _)| tells(run)).map(|(run, value)| (*run, *value));
-            (event.clone(), of.collect::<BTreeMap<usize, f64>>())
-        });
-        let values: Values = told.filter(|(_, of)| both(of)).collect();
-        let (runs, rows, weights) = matrix(metric, &values, 2, scatters);
-        let levels = column_levels(&rows, &weights, runs.len());
-        let side = |after: bool| {
-            let levels =
-                runs.iter().zip(&levels).filter(|(run, level)| is_after(run) == after && level.is_finite());
-            levels.map(|(_, level)| *level).collect::<Vec<f64>>()
-        };
-        let early = values.values().flat_map(|of| of.iter().filter(|(run, _)| !is_after(run)));
-        let level = median(early.map(|(_, value)| *value).collect());
-        Self { before: side(false), after: side(true), level, starts: rows.len() }
-    }
-
-    fn change(&self) -> Option<f64> {
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-        (self.before.len() >= 2 && self.after.len() >= 2).then(|| mean(&self.after) - mean(&self.before))
-    }
 }
 
 /// The effect of a change of a machine at an instant, microseconds since 1970; a run that begins then is after it. Runs before
@@ -234,39 +194,53 @@ fn joint_effect(
     window: Window,
 ) -> Option<JointEffect> {
     let scatters = history.scatters(metric);
-    let scatters = (axis.joint.as_str(), &scatters);
-    let sides = Sides::of(history, metric, scatters, values, window);
-    let own = sides.change()?;
-    let alike = |(other, by): &&(Axis, By)| {
-        *by == metric
-            && other.machine != axis.machine
-            && (&other.joint, &other.unit) == (&axis.joint, &axis.unit)
+    let sides = |axis: &Axis, values: &Values, window: Window| {
+        Sides::of(history, metric, (axis.joint.as_str(), &scatters), values, window)
     };
-    let others = history.values.iter().filter(|(key, _)| alike(key));
-    let others: Vec<f64> = others
-        .filter_map(|(_, values)| Sides::of(history, metric, scatters, values, window).change())
-        .collect();
-    let usual =
-        (others.len() >= FEWEST_OTHERS).then(|| (median(others.clone()), SIGMA_PER_MAD * mad(&others)));
-    let (usual_change, spread) = usual.unwrap_or((0.0, 0.0));
-    let error = 1.2533 * spread / (others.len().max(1) as f64).sqrt();
-    let found = difference(&sides.before, &sides.after, (usual_change, error, spread))?;
+    // What the level was just before and just after.
+    let (window, [since, until]) = sides(axis, values, window).at_once(window);
+    let own_sides = sides(axis, values, window);
+    let own = own_sides.change()?;
+    let alike = |(other, by): &&(Axis, By)| *by == metric && other.machine != axis.machine;
+    // Peak errors of other joints change in proportion.
+    let change = |(other, of): (&Axis, &Values)| {
+        let found = sides(other, of, window);
+        let same = other.joint == axis.joint && other.unit == axis.unit;
+        let scale = if metric == By::Peak && !same { own_sides.level / found.level } else { 1.0 };
+        found.change().map(|change| scale * change).filter(|change| change.is_finite())
+    };
+    let others = || history.values.iter().filter(|(key, _)| alike(key));
+    let same = |other: &Axis| (&other.joint, &other.unit) == (&axis.joint, &axis.unit);
+    let of_same = others().filter(|((other, _), _)| same(other));
+    let of_same: Vec<f64> = of_same.filter_map(|((other, _), of)| change((other, of))).collect();
+    let of_joints = || {
+        let machines: BTreeSet<&str> = others().map(|((other, _), _)| other.machine.as_str()).collect();
+        let changes: Vec<f64> = others().filter_map(|((other, _), of)| change((other, of))).collect();
+        (machines.len() >= FEWEST_OTHERS && changes.len() >= FEWEST_OTHERS).then_some(changes)
+    };
+    let told = Some(of_same.clone()).filter(|same| same.len() >= FEWEST_OTHERS).or_else(of_joints);
+    let usual = told.map(|told| (median(told.clone()), SIGMA_PER_MAD * mad(&told), told.len()));
+    let (usual_change, spread, count) = usual.unwrap_or((0.0, 0.0, 1));
+    let error = 1.2533 * spread / (count as f64).sqrt();
+    let found = difference(&own_sides.before, &own_sides.after, (usual_change, error, spread))?;
     let as_much =
-        others.iter().filter(|other| (*other - usual_change).abs() >= (own - usual_change).abs()).count();
+        of_same.iter().filter(|other| (*other - usual_change).abs() >= (own - usual_change).abs()).count();
     Some(JointEffect {
         joint: axis.joint.clone(),
         metric,
         unit: if metric == By::Peak { axis.unit.clone() } else { "s".to_owned() },
-        before: sides.level,
+        before: own_sides.level,
         change: found.value,
         interval_95: found.interval,
-        usual_change: usual.map(|(change, _)| change),
+        since,
+        until,
+        usual_change: usual.map(|(change, ..)| change),
         rank: 1 + as_much,
-        of: 1 + others.len(),
+        of: 1 + of_same.len(),
         p_value: found.p,
         q_value: 1.0,
         found: false,
-        starts: sides.starts,
+        starts: own_sides.starts,
     })
 }
 

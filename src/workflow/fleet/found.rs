@@ -3,7 +3,12 @@
 
 use std::{collections::BTreeMap, path::Path};
 
-use super::joint_trend::{FEWEST_RUNS, JointTrend, MOST_FALSE};
+use super::{
+    course::Change,
+    history::By,
+    joint_trend::{FEWEST_RUNS, JointTrend, MOST_FALSE},
+    stepped::LevelStep,
+};
 use crate::math::{SIGMA_PER_MAD, false_discovery, mad, mean, median, theil_sen};
 
 /// Robust standard deviations of the fleet's changes that a change must stand out by to be found: less than that many
@@ -26,13 +31,19 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
     let tell = stand_out(trends);
     let p_trend = trends.iter().map(|trend| trend.p_value);
     let p_step = trends.iter().map(|trend| trend.step.as_ref().map_or(1.0, |step| step.p_value));
-    let q = false_discovery(&p_trend.chain(p_step).collect::<Vec<f64>>());
-    let (q_trend, q_step) = q.split_at(trends.len());
+    let p_course = trends.iter().map(|trend| trend.course.as_ref().map_or(1.0, |course| course.p_value));
+    let q = false_discovery(&p_trend.chain(p_step).chain(p_course).collect::<Vec<f64>>());
+    let (q_trend, q_others) = q.split_at(trends.len());
+    let (q_step, q_course) = q_others.split_at(trends.len());
+    let at_step = |own: &JointTrend| Some(own.levels.get(own.step.as_ref()?.runs_before)?.at_days);
     let steps = |(own, q): (&JointTrend, &f64)| {
-        if *q < MOST_FALSE { elsewhere(trends, own) } else { None }
+        if *q < MOST_FALSE { elsewhere(trends, own, at_step(own)?) } else { None }
     };
     let elsewhere: Vec<Option<(f64, f64)>> = trends.iter().zip(q_step).map(steps).collect();
-    for (k, trend) in trends.iter_mut().enumerate() {
+    let changes =
+        |(own, q): (&JointTrend, &f64)| if *q < MOST_FALSE { changes(trends, own) } else { Vec::new() };
+    let changes: Vec<Vec<Change>> = trends.iter().zip(q_course).map(changes).collect();
+    for ((k, trend), changes) in trends.iter_mut().enumerate().zip(changes) {
         trend.q_value = q_trend[k];
         let usual = tell[k] && trend.stands_out.is_some_and(|out| out < STANDS_OUT);
         let least = RELEVANT * trend.level.abs();
@@ -40,11 +51,7 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
             trend.q_value < MOST_FALSE && !usual && (trend.slope_per_day * trend.days).abs() >= least;
         if let Some(step) = &mut trend.step {
             step.q_value = q_step[k];
-            // What others changed by and what this one did are known so well only.
-            let own = (step.interval_95[1] - step.interval_95[0]) / (2.0 * SIGMAS_OF_95);
-            let beyond = elsewhere[k].is_none_or(|(middle, spread)| {
-                (step.change - middle).abs() >= least.max(STANDS_OUT * spread.hypot(own))
-            });
+            let beyond = beyond(step.change, step.interval_95, least, elsewhere[k]);
             let steps = step.q_value < MOST_FALSE && step.change.abs() >= least && beyond;
             trend.is_step = steps && (!drifts || step.left < 1.0);
             if trend.is_step {
@@ -52,6 +59,19 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
             }
         }
         trend.found = drifts || trend.is_step;
+        if let Some((last, course)) = changes.last().zip(trend.course.as_ref()) {
+            (trend.found, trend.is_step) = (true, last.per_day.is_none());
+            (trend.slope_per_day, trend.interval_95) = course.ends;
+            if last.per_day.is_none() {
+                trend.step = Some(LevelStep::of(last, (course.p_value, q_course[k])));
+                trend.since.clone_from(&last.by);
+            } else {
+                trend.q_value = q_course[k];
+                trend.since.clone_from(&last.after);
+            }
+            trend.line.clone_from(&course.line);
+            trend.changes = changes;
+        }
         if trend.found {
             trend.levels.iter_mut().for_each(|level| level.page = page_beside(&level.log));
         } else {
@@ -60,11 +80,43 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
     }
 }
 
+/// Whether a change is clearly more than that of others: the middle of these, and their spread.
+fn beyond(change: f64, [low, high]: [f64; 2], least: f64, others: Option<(f64, f64)>) -> bool {
+    // What others changed by and what this one did are known so well only.
+    let own = (high - low) / (2.0 * SIGMAS_OF_95);
+    others.is_none_or(|(middle, spread)| (change - middle).abs() >= least.max(STANDS_OUT * spread.hypot(own)))
+}
+
+/// What of a course matters, and is not what the joints of other machines do in the same days.
+fn changes(trends: &[JointTrend], own: &JointTrend) -> Vec<Change> {
+    let least = RELEVANT * own.level.abs();
+    let own_change = |change: &&Change| {
+        let others = match change.per_day {
+            None => elsewhere(trends, own, change.at_days[1]),
+            Some(_) => elsewhere_between(trends, own, change.at_days),
+        };
+        change.change.abs() >= least && beyond(change.change, change.interval_95, least, others)
+    };
+    own.course.iter().flat_map(|course| &course.changes).filter(own_change).cloned().collect()
+}
+
+/// By how much the joints of other machines changed between two days: the middle, and the spread as a robust standard deviation.
+fn elsewhere_between(trends: &[JointTrend], own: &JointTrend, days: [f64; 2]) -> Option<(f64, f64)> {
+    let alike = |other: &&JointTrend| {
+        let key = |trend: &JointTrend| (trend.metric, trend.direction.is_some(), trend.unit.clone());
+        other.machine != own.machine && key(other) == key(own)
+    };
+    let share = |other: &JointTrend| if own.metric == By::Peak { own.level / other.level } else { 1.0 };
+    let change = |other: &JointTrend| Some(share(other) * slope_over(other, days)? * (days[1] - days[0]));
+    let changes: Vec<f64> =
+        trends.iter().filter(alike).filter_map(change).filter(|c| c.is_finite()).collect();
+    (changes.len() >= FEWEST_JOINTS).then(|| (median(changes.clone()), SIGMA_PER_MAD * mad(&changes)))
+}
+
 /// By how much the joints of other machines changed when this one steps: the middle, and the spread as a robust standard
 /// deviation. `None` where too few tell that. What one machine's joints share is its own.
-fn elsewhere(trends: &[JointTrend], own: &JointTrend) -> Option<(f64, f64)> {
-    let step = own.step.as_ref()?;
-    let at_days = own.levels.get(step.runs_before)?.at_days;
+fn elsewhere(trends: &[JointTrend], own: &JointTrend, at_days: f64) -> Option<(f64, f64)> {
+    let share = |other: &JointTrend| if own.metric == By::Peak { own.level / other.level } else { 1.0 };
     let change = |other: &JointTrend| {
         let side = |after: bool| -> Vec<f64> {
             let levels = other.levels.iter().filter(|level| (level.at_days >= at_days) == after);
@@ -72,7 +124,7 @@ fn elsewhere(trends: &[JointTrend], own: &JointTrend) -> Option<(f64, f64)> {
         };
         let [before, after] = [side(false), side(true)];
         let enough = before.len().min(after.len()) >= FEWEST_OF_A_SIDE;
-        enough.then(|| mean(&after) - mean(&before))
+        enough.then(|| share(other) * (mean(&after) - mean(&before))).filter(|change| change.is_finite())
     };
     let alike = |other: &&JointTrend| {
         let key = |trend: &JointTrend| (trend.metric, trend.direction, trend.unit.clone());
@@ -103,16 +155,23 @@ fn stand_out(trends: &mut [JointTrend]) -> Vec<bool> {
                 let key = |trend: &JointTrend| (trend.metric, trend.direction.is_some(), trend.unit.clone());
                 key(other) == key(own)
             };
+            let slope = |other: &JointTrend| Some(slope_over(other, span_days(own))? / scale(other));
             let slopes: Vec<f64> =
-                trends.iter().filter(alike).filter_map(|other| slope_over(other, span_days(own))).collect();
+                trends.iter().filter(alike).filter_map(slope).filter(|s| s.is_finite()).collect();
             (slopes.len() >= FEWEST_JOINTS, SIGMA_PER_MAD * mad(&slopes), median(slopes))
         })
     };
     let found: Vec<(bool, f64, f64)> = trends.iter().map(&mut usual).collect();
     for (trend, (_, spread, middle)) in trends.iter_mut().zip(&found) {
-        trend.stands_out = (*spread > 0.0).then(|| (trend.slope_per_day - middle).abs() / spread);
+        let own = trend.slope_per_day / scale(trend);
+        trend.stands_out = (*spread > 0.0).then(|| (own - middle).abs() / spread);
     }
     found.into_iter().map(|(tells, ..)| tells).collect()
+}
+
+/// What a slope is a share of where joints are compared: peak errors change in proportion, a fast joint's by more.
+fn scale(trend: &JointTrend) -> f64 {
+    if trend.metric == By::Peak && trend.level > 0.0 { trend.level } else { 1.0 }
 }
 
 /// The first and the last day of a trend.
@@ -136,7 +195,68 @@ fn slope_over(trend: &JointTrend, [from, to]: [f64; 2]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::joint_trend::Level, *};
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    use super::{
+        super::{course::course, joint_trend::Level, stepped::best_step},
+        *,
+    };
+
+    /// Eight machines of which the third goes its own way, judged.
+    fn judged(of_third: impl Fn(f64) -> f64, days: u32) -> JointTrend {
+        let trend = |machine: u32| {
+            let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(u64::from(machine));
+            let mut noise = || -> f64 { StandardNormal.sample(&mut rng) };
+            let own = |day: u32| if machine == 2 { of_third(f64::from(day)) } else { 0.0 };
+            let points: Vec<(f64, f64)> =
+                (0..days).step_by(3).map(|day| (f64::from(day), 2.4 + own(day) + 0.02 * noise())).collect();
+            let level = |(at_days, value): &(f64, f64)| Level {
+                at_days: *at_days,
+                value: *value,
+                log: String::new(),
+                page: None,
+            };
+            let found = crate::math::trend(&points).unwrap();
+            JointTrend {
+                machine: machine.to_string(),
+                joint: "stick".into(),
+                slope_per_day: found.slope,
+                interval_95: found.interval,
+                p_value: found.p,
+                step: best_step(&points),
+                course: course(&points),
+                days: f64::from(days),
+                level: 2.4,
+                levels: points.iter().map(level).collect(),
+                ..JointTrend::default()
+            }
+        };
+        let mut trends: Vec<JointTrend> = (0..8).map(trend).collect();
+        judge(&mut trends);
+        assert!(trends.iter().enumerate().all(|(k, trend)| k == 2 || !trend.found), "{trends:?}");
+        trends.swap_remove(2)
+    }
+
+    #[test]
+    fn what_grows_from_a_day_on_grows_by_that_and_once_it_is_mended_by_nothing() {
+        let worn = |day: f64| if (60.0..100.0).contains(&day) { 0.03 * (day - 60.0) } else { 0.0 };
+        let found = judged(worn, 100);
+        assert!(found.found && !found.is_step && (found.growth_per_day() - 0.03).abs() < 0.002, "{found:?}");
+        assert!(found.since.as_deref().is_some_and(|since| since < "1970-03-05"), "{:?}", found.since);
+        let found = judged(worn, 150);
+        let step = found.step.as_ref().unwrap();
+        assert!(found.is_step && (step.change + 1.2).abs() < 0.1 && found.changes.len() == 2, "{found:?}");
+        assert!(found.growth_per_day() < 0.0, "a limit on growth is kept");
+        let found = judged(|day| if (40.0..85.0).contains(&day) { 0.6 } else { 0.0 }, 150);
+        let changes: Vec<f64> = found.changes.iter().map(|change| change.change).collect();
+        assert!(
+            matches!(changes.as_slice(), [up, down] if (up - 0.6).abs() < 0.05 && (down + 0.6).abs() < 0.05),
+            "{found:?}"
+        );
+        let found = judged(|_| 0.0, 150);
+        assert!(!found.found && found.changes.is_empty());
+    }
 
     #[test]
     fn what_a_fleet_has_in_common_for_some_days_is_no_trend_of_a_machine_that_was_there_for_these_alone() {

@@ -128,23 +128,12 @@ mod tests {
         let trend = |(slope, found): &(f64, bool)| JointTrend {
             machine: "M".into(),
             joint: format!("j{slope}"),
-            direction: None,
             metric: By::Delay,
             unit: "s".into(),
             slope_per_day: *slope,
-            interval_95: [0.0, 1.0],
-            p_value: 0.01,
-            q_value: 0.01,
             found: *found,
-            is_step: false,
-            step: None,
-            stands_out: None,
-            since: None,
-            starts: 3,
             runs: 10,
-            days: 9.0,
-            level: 0.1,
-            levels: Vec::new(),
+            ..JointTrend::default()
         };
         Drift {
             format: String::new(),

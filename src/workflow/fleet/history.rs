@@ -313,6 +313,17 @@ impl History {
         usual.into_iter().map(|(key, values)| (key, median(values))).collect()
     }
 
+    /// The starts that more than one machine has.
+    pub(super) fn shared(&self, metric: By) -> BTreeSet<(&str, &Event)> {
+        let mut machines: BTreeMap<(&str, &Event), BTreeSet<&str>> = BTreeMap::new();
+        for ((axis, _), values) in self.values.iter().filter(|((_, by), _)| *by == metric) {
+            for event in values.keys() {
+                machines.entry((axis.joint.as_str(), event)).or_default().insert(&axis.machine);
+            }
+        }
+        machines.into_iter().filter(|(_, machines)| machines.len() > 1).map(|(key, _)| key).collect()
+    }
+
     /// How much each start of each joint scatters from run to run: the median over the machines.
     pub(super) fn scatters(&self, metric: By) -> Scatters {
         let mut found: BTreeMap<(String, Event), Vec<f64>> = BTreeMap::new();

@@ -2,7 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{history::By, run::date, stepped::LevelStep};
+use super::{
+    course::{Change, Course},
+    history::By,
+    run::date,
+    stepped::LevelStep,
+};
 
 /// Runs of one plan, at least: fewer cannot prove a trend.
 pub(super) const FEWEST_RUNS: usize = 5;
@@ -25,7 +30,8 @@ pub struct JointTrend {
     pub metric: By,
     /// Its unit: "s" of delays and lags, else that of the joint, "rad" or "m".
     pub unit: String,
-    /// Change a day, median over the starts of each start's Theil-Sen slope, weighted by one over the square of its scatter.
+    /// Change a day, median over the starts of each start's Theil-Sen slope, weighted by one over the square of its scatter; with
+    /// [`Self::changes`] that of the last stretch.
     pub slope_per_day: f64,
     /// Its 95 % interval, by Kendall's test on the levels of the runs.
     pub interval_95: [f64; 2],
@@ -42,6 +48,18 @@ pub struct JointTrend {
     /// The step that explains the levels best; null for fewer than six runs.
     #[serde(default)]
     pub step: Option<LevelStep>,
+    /// What the level did, where it changed more than once or from some day on, in order; empty where one trend or one step says it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<Change>,
+    /// That as a line: days since 1970 and level.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub line: Vec<[f64; 2]>,
+    /// Whether what the other machines did at the same time is taken off the levels.
+    #[serde(default)]
+    pub less_common: bool,
+    /// What the level did, before it is judged.
+    #[serde(skip)]
+    pub(super) course: Option<Course>,
     /// The slope in robust standard deviations of the slopes of this metric in all joints; null where these are equal.
     pub stands_out: Option<f64>,
     /// When the level begins to change, UTC: of a step the first run after it, else the first run if it changes all the time.

@@ -6,7 +6,9 @@
 //! give equal bytes.
 
 mod arrange;
+mod common;
 mod compact;
+mod course;
 mod dated;
 mod document;
 mod doubts;
@@ -17,6 +19,7 @@ mod found;
 mod gate;
 mod history;
 mod joint_trend;
+mod leveled;
 mod limits;
 mod machine;
 mod map;
@@ -25,6 +28,7 @@ mod once;
 mod one_way;
 mod run;
 mod scan;
+mod sides;
 mod sources;
 mod stepped;
 mod store;
@@ -33,6 +37,7 @@ mod window;
 mod worst;
 
 pub use compact::{Compacted, compact};
+pub use course::Change;
 pub(in crate::workflow) use dated::began_ns;
 pub use document::{Failure, Scanned};
 pub use drift::{Drift, drift};

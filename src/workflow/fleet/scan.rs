@@ -126,9 +126,9 @@ pub fn scan(
     let beside = Beside { gates: &Gates::default(), drawn: false, again: &|_| false, analysed: &|_, _| () };
     let (found, tables_left, empty) = sources(&inputs.sources)?;
     let mut scanned = Scanned { tables_left, ..scan_these(found, inputs, &beside, seen)? };
-    let lead_nowhere =
-        |text: &String| scanned.remarks.add(Code::MissingFile, 1, format!("no log in {text:?}"));
-    empty.iter().for_each(lead_nowhere);
+    for message in empty {
+        scanned.remarks.add(Code::MissingFile, 1, message);
+    }
     Ok(scanned)
 }
 

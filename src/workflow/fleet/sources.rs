@@ -3,6 +3,7 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs::{self, Metadata},
+    io::ErrorKind,
     path::{Path, PathBuf},
     time::UNIX_EPOCH,
 };
@@ -59,6 +60,8 @@ struct Found {
     tables: bool,
     /// Tables that were not asked for.
     left_out: usize,
+    /// Folders in folders that this user may not list, as a disk has for its repairs.
+    closed: Vec<PathBuf>,
 }
 
 impl Found {
@@ -87,17 +90,20 @@ fn ends(name: &str, ending: &str) -> bool {
     name.to_lowercase().ends_with(ending)
 }
 
-/// The logs of all sources, each once, in the order of their paths; how many tables beside them were not asked for; and the
-/// sources that lead to no log, where others do.
+/// The logs of all sources, each once, in the order of their paths; how many tables beside them were not asked for; and what is to be
+/// said of sources that lead to no log, where others do, and of folders that may not be listed.
 pub(super) fn sources(texts: &[String]) -> Result<(Vec<Source>, usize, Vec<String>), FleetFailure> {
     let (mut found, mut empty) = (Found::default(), Vec::new());
     for text in texts {
         let mut own = Found::default();
         add(text, Path::new(""), &mut own)?;
         if own.logs.is_empty() && !Path::new(text).exists() {
-            empty.push(text.clone());
+            empty.push(format!("no log in {text:?}"));
         }
         found.left_out += own.left_out;
+        let closed =
+            |path: &PathBuf| format!("{} may not be listed: what lies in it is left out", path.display());
+        empty.extend(own.closed.iter().map(closed));
         for (path, source) in own.logs {
             found.logs.entry(path).or_insert(source);
         }
@@ -208,7 +214,12 @@ fn walk(folder: &Path, wanted: &mut dyn FnMut(&Path) -> bool, found: &mut Found)
         let Ok(is) = fs::metadata(&path) else { continue };
         if is.is_dir() {
             // A link to a folder may lead in a circle.
-            if !entry.file_type().is_ok_and(|kind| kind.is_symlink()) {
+            if entry.file_type().is_ok_and(|kind| kind.is_symlink()) {
+                continue;
+            }
+            if fs::read_dir(&path).is_err_and(|error| error.kind() == ErrorKind::PermissionDenied) {
+                found.closed.push(path);
+            } else {
                 walk(&path, wanted, found)?;
             }
         } else if is.is_file() && wanted(&path) {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::run::date;
+use super::{course::Change, run::date};
 use crate::math::{line, step, theil_sen};
 
 /// A level that changes between two runs and stays.
@@ -33,6 +33,21 @@ pub struct LevelStep {
 const SURELY: f64 = 0.8;
 
 impl LevelStep {
+    /// One of several changes.
+    pub(super) fn of(change: &Change, (p_value, q_value): (f64, f64)) -> Self {
+        Self {
+            runs_before: change.runs_before,
+            after: change.after.clone(),
+            by: change.by.clone(),
+            days: change.at_days[1] - change.at_days[0],
+            change: change.change,
+            interval_95: change.interval_95,
+            p_value,
+            q_value,
+            left: 0.0,
+        }
+    }
+
     /// Whether it is surely no change over some days.
     pub fn is_sure(&self) -> bool {
         self.left < SURELY

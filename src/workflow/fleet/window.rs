@@ -38,6 +38,15 @@ impl Window {
         }
     }
 
+    /// The same without what began before one instant or after another.
+    pub(super) fn within(self, from_us: Option<i64>, until_us: Option<i64>) -> Self {
+        Self {
+            from_us: from_us.map_or(self.from_us, |us| us.max(self.from_us)),
+            to_us: until_us.map_or(self.to_us, |us| us.saturating_add(1).min(self.to_us)),
+            ..self
+        }
+    }
+
     pub(super) fn holds(&self, run: &Run) -> bool {
         (self.from_us..self.to_us).contains(&run.started_us)
     }

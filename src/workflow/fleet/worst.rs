@@ -85,7 +85,7 @@ impl WorstJoint {
 /// [`FleetFailure`] if there is no dataset, or no such machine in it.
 pub fn worst(root: &Path, filter: &Filter, by: By) -> Result<Worst, FleetFailure> {
     let history = History::read_all(root, filter)?;
-    let usual = history.usual(by);
+    let (usual, shared) = (history.usual(by), history.shared(by));
     let mut joints = Vec::new();
     let wanted = |machine: &str| filter.machine.as_ref().is_none_or(|wanted| wanted == machine);
     for ((axis, metric), values) in &history.values {
@@ -99,7 +99,8 @@ pub fn worst(root: &Path, filter: &Filter, by: By) -> Result<Worst, FleetFailure
         runs.sort_unstable();
         runs.dedup();
         let shares = values.iter().flat_map(|(event, of)| {
-            let usual = usual.get(&(axis.joint.as_str(), event)).copied().filter(|usual| *usual > 0.0);
+            let key = (axis.joint.as_str(), event);
+            let usual = usual.get(&key).copied().filter(|usual| *usual > 0.0 && shared.contains(&key));
             of.values().filter_map(move |value| Some(value / usual? - 1.0))
         });
         let shares: Vec<f64> = shares.collect();

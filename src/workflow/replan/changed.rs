@@ -103,6 +103,7 @@ impl History {
         }
         let stays = |k: usize| now.runs.contains(&k);
         (self.changes, self.unsteady_rad) = (now.changes, now.unsteady_rad);
+        self.undone_rad = self.undone(&now.runs);
         retain(&mut self.runs, stays);
         retain(&mut self.series, stays);
         retain(&mut self.places, stays);

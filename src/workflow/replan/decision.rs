@@ -11,6 +11,9 @@ const NEARLY: f64 = 1.05;
 /// A correction that is expected to come above the best run by this factor is not worth sending.
 const WORSE: f64 = 1.1;
 
+/// A correction that came to more than the best before it by this factor met something else than too large a step.
+const FAR: f64 = 2.0;
+
 /// So many corrections that gained nothing are enough.
 const FAILURES: usize = 2;
 
@@ -52,6 +55,11 @@ pub enum KeepReason {
     ExpectedWorse {
         /// Its mean peak, rad.
         expected_rad: f64,
+    },
+    /// All that it had gained was undone in the newest run, which may never come again.
+    Undone {
+        /// Its mean peak before that, rad.
+        before_rad: f64,
     },
 }
 
@@ -143,11 +151,20 @@ impl History {
     /// corrections before it were.
     pub(super) fn decision(&self) -> Decision {
         let Some((last, last_rad)) = self.peaks_rad().pop() else { return Decision::Send };
+        if let Some(before_rad) = self.undone_rad.filter(|_| !self.follows) {
+            let because = KeepReason::Undone { before_rad };
+            return Decision::Keep { run: last, because, best_rad: last_rad, last_rad };
+        }
         let commands = self.commands();
         let because = if self.runs[last].corrected {
             let newest = commands.split_last().filter(|(_, before)| before.len() > 1);
-            let gained = newest.and_then(|((_, rad), before)| Some(*rad < WORTH * best(before)?.1));
-            (gained == Some(false) && !self.follows).then_some(KeepReason::GainedLittle)
+            let by = newest.and_then(|((newest, rad), before)| Some((*newest, rad / best(before)?.1)));
+            let gained_little = by.is_some_and(|(newest, by)| {
+                // What came to far more was no step too many, and it is no end where the best came to as little as before since.
+                let passed = by > FAR && newest < last && self.failures(&commands) < FAILURES;
+                by >= WORTH && !passed
+            });
+            (gained_little && !self.follows).then_some(KeepReason::GainedLittle)
         } else {
             let corrections = self.failures(&commands);
             (corrections >= FAILURES).then_some(KeepReason::Failed { corrections })

@@ -79,6 +79,8 @@ pub(super) struct History {
     pub(super) drifts: bool,
     /// Whether it goes on changing one way: what was sent before the newest run is no guide.
     pub(super) follows: bool,
+    /// Mean peak that the command of the newest run gave before, where that run undid all that it gained, rad.
+    pub(super) undone_rad: Option<f64>,
     /// In whose unit means over the joints are told.
     pub(super) kind: JointKind,
     /// Largest difference of mean peaks by which that was told, rad.
@@ -170,9 +172,10 @@ impl History {
         self.runs.iter().any(|run| run.corrected)
     }
 
-    /// Whether the only run is the first of a machine that has changed: what was sent in it was made for another one.
+    /// Whether nothing but what was made for another machine was sent since that has changed.
     pub(super) fn anew(&self) -> bool {
-        self.changes > 0 && self.runs.len() == 1 && !self.drifts
+        let same = (1..self.runs.len()).all(|k| self.same(0, k));
+        self.changes > 0 && !self.runs.is_empty() && same && !self.drifts
     }
 
     /// What is to be expected beside all else of a machine that changed, rad: in the mean, where it did more than once, and

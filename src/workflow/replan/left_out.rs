@@ -1,5 +1,5 @@
-//! Runs from which nothing is learnt: given twice, broken off, or with a joint that stood though it answers in others, as of a
-//! valve without current, which says nothing of its machine.
+//! Runs from which nothing is learnt: given twice, broken off, held back by an override, or with a joint that stood though it answers
+//! in others, as of a valve without current, which says nothing of its machine.
 
 use std::collections::BTreeMap;
 
@@ -8,14 +8,20 @@ use crate::{
     log::Recording,
     math::deviation,
     remark::{Code, Remarks},
-    series::{Broken, align},
+    series::{Broken, Series, align, bridged},
     units::DEGREE_RAD,
-    workflow::{carried::Carried, names::told_apart},
+    workflow::{
+        carried::Carried,
+        names::told_apart,
+        same_plan::{ahead_s, cut},
+    },
 };
 
 /// A joint that moves by a smaller share of its plan stands, one that moves by more than the other answers.
 const STANDS: f64 = 0.03;
 const ANSWERS: f64 = 0.5;
+/// What is sent later than its plan by more was held back, s: corrections run ahead.
+const BEHIND_S: f64 = 0.5;
 /// Plans whose motions differ by less, as a share, may be one.
 const ALIKE: f64 = 0.05;
 /// Plans that move less are not judged, rad: root mean square about the mean.
@@ -32,6 +38,7 @@ pub(super) fn without_useless(
     let names = told_apart(&inputs.logs);
     let mut left = stopped(&observed);
     twice(&observed, &names, &mut left);
+    held_back(&observed, &mut left);
     let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
     let dead = dead(&stay.iter().map(|k| &observed[*k]).collect::<Vec<_>>());
     left.extend(dead.into_iter().map(|(place, why)| (stay[place], why)));
@@ -66,6 +73,35 @@ fn stopped(observed: &[Recording]) -> LeftOut {
     };
     let others = observed.split_last().map_or(&[][..], |(_, others)| others);
     others.iter().enumerate().filter_map(of).collect()
+}
+
+/// Runs in which what was sent came after its plan, where there are others.
+fn held_back(observed: &[Recording], left: &mut LeftOut) {
+    let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
+    let behind: Vec<(usize, f64)> =
+        stay.iter().filter_map(|k| Some((*k, behind_s(&observed[*k])?))).collect();
+    if behind.len() < stay.len() {
+        left.extend(behind.into_iter().map(|(k, by_s)| {
+            let why = "what was sent came after its plan, by";
+            (
+                k,
+                (
+                    Code::Paused,
+                    format!(
+                        "{why} {by_s:.1} s in the mean of its motion: an override or a pause held it back"
+                    ),
+                ),
+            )
+        }));
+    }
+}
+
+/// How much later than its plan a command was sent, s, if it was held back.
+fn behind_s(run: &Recording) -> Option<f64> {
+    let [from_s, to_s] = run.planned.span_s()?;
+    let of = |series: &Series| cut(&*bridged(series).ok()?, from_s, to_s).ok();
+    let by_s = -ahead_s(&of(&run.command.as_ref()?.series)?, &of(&run.planned)?);
+    (by_s > BEHIND_S).then_some(by_s)
 }
 
 /// Runs in which a joint stood that answers in another one, and, of those before the newest, in the newest.

@@ -21,10 +21,12 @@ mod order;
 mod outcome;
 mod predicted;
 mod retime;
+mod same_way;
 mod samples;
 mod shape;
 mod subject;
 mod unclear;
+mod undone;
 mod warp;
 
 use std::ops::ControlFlow;
@@ -122,6 +124,12 @@ pub fn run(
     let doubts = observed.iter().flat_map(|run| run.remarks.as_slice());
     let sent = doubts.filter(|remark| remark.code == Code::PlanIsCommand);
     sent.for_each(|remark| remarks.add(remark.code, remark.count, remark.message.clone()));
+    // Other timings that were made here carry their times.
+    if last.times_s.is_none()
+        && let Some(message) = same_way::said(&names, observed, &history.others)?
+    {
+        remarks.add(Code::Paused, 1, message);
+    }
     for message in &last.elsewhere {
         remarks.add(Code::OtherFile, 1, message);
     }

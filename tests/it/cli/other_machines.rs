@@ -32,10 +32,18 @@ struct Machine {
     sender_hz: f64,
     /// While the sensor of the stick shows one value, s.
     stands_s: [f64; 2],
+    /// How fast what is sent is played from 8 s on.
+    pace: f64,
 }
 
-const PLAIN: Machine =
-    Machine { lag_s: 0.22, band_deg: 0.25, stop_deg: 90.0, sender_hz: RATE_HZ, stands_s: [0.0; 2] };
+const PLAIN: Machine = Machine {
+    lag_s: 0.22,
+    band_deg: 0.25,
+    stop_deg: 90.0,
+    sender_hz: RATE_HZ,
+    stands_s: [0.0; 2],
+    pace: 1.0,
+};
 
 type Sent = [Vec<f64>; 2];
 
@@ -61,6 +69,13 @@ impl Machine {
             (0..STEPS).map(step).collect()
         };
         [own(0), own(1)]
+    }
+
+    /// What comes of what is sent where an override holds it back.
+    fn played(&self, sent: &Sent) -> Sent {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small number")]
+        let at = |k: usize| if k < 800 { k } else { 800 + (self.pace * (k - 800) as f64) as usize };
+        sent.each_ref().map(|own| (0..STEPS).map(|k| own[at(k)]).collect())
     }
 
     /// What a recorder has of where the joints are.
@@ -95,7 +110,7 @@ fn planned() -> Sent {
 
 /// A run of what was sent, as a table; its mean distance from the plan, deg.
 fn drive(folder: &Path, number: usize, machine: &Machine, sent: &Sent) -> f64 {
-    let (plan, sent) = (machine.held(&planned()), machine.held(sent));
+    let (plan, sent) = (machine.held(&planned()), machine.played(&machine.held(sent)));
     let came = machine.run(&sent);
     let seen = machine.seen(&came);
     let mut table = "time_s".to_owned();
@@ -199,6 +214,34 @@ fn a_machine_that_goes_on_changing_one_way_is_followed_and_sent_no_older_command
     assert!(errors[4] < 1.3 * errors[2] && errors[4] < 0.2 * errors[0], "{errors:?}");
     let (_, _, said) = learn(&[PLAIN; 4]);
     assert!(!said.iter().any(|said| remarks(said, "goes on changing")), "it does not");
+}
+
+#[test]
+fn what_undoes_all_that_a_command_gained_teaches_nothing_once_and_a_command_twice() {
+    let slow = Machine { lag_s: 2.8 * PLAIN.lag_s, ..PLAIN };
+    let why = |said: &Value| said["decision"]["because"]["why"].as_str().map(str::to_owned);
+    let (errors, _, said) = learn(&[PLAIN, PLAIN, slow, PLAIN, PLAIN]);
+    assert_eq!(why(&said[2]).as_deref(), Some("undone"), "{} {errors:?}", said[2]["decision"]);
+    assert!(
+        errors[3..].iter().all(|error| *error < 1.02 * errors[1]),
+        "what was good is sent again: {errors:?}"
+    );
+    // Runs that are equal to the last digit would be one, given twice.
+    let slower = |by: f64| Machine { lag_s: by * slow.lag_s, ..slow };
+    let (errors, _, said) = learn(&[PLAIN, PLAIN, slow, slower(1.01), slower(0.99)]);
+    assert!(
+        said[3]["decision"]["what"] == "send" && errors[4] < 0.5 * errors[3],
+        "{errors:?} {}",
+        said[3]["decision"]
+    );
+}
+
+#[test]
+fn nothing_is_learnt_of_a_run_that_an_override_held_back() {
+    let held = Machine { pace: 0.8, ..PLAIN };
+    let (errors, _, said) = learn(&[PLAIN, PLAIN, held, PLAIN, PLAIN]);
+    assert!(remarks(&said[2], "what was sent came after its plan"), "{}", said[2]["remarks"]);
+    assert!(errors[2] > 5.0 * errors[1] && errors[3] < errors[1] && errors[4] < errors[1], "{errors:?}");
 }
 
 #[test]

@@ -44,7 +44,7 @@ pub(super) fn all(replanned: &Replanned) -> impl Iterator<Item = Check> {
     let sent = command.map_or(plan, |command| &command.series);
     let always = [ends(plan, sent), rest(sent, command), limits(replanned, command), trust(replanned)];
     let others = [
-        too_fast(replanned),
+        together(replanned).or_else(|| too_fast(replanned)),
         promise(replanned),
         Some(outlook(replanned)),
         whole(replanned),
@@ -168,6 +168,17 @@ fn fastest(command: &Commanded) -> Option<Fastest> {
     let (name, kind) = (joint.name.clone(), joint.kind);
     let speed_rad_s = most(speed.iter().copied());
     Some(Fastest { joint: name, kind, speed_rad_s, ratio: joint.speed_ratio })
+}
+
+/// A plan that asks for less than this share beyond what its joints share is not told.
+const LITTLE: f64 = 0.03;
+
+/// What a plan asks for beyond what its joints share; each alone then looks too slow for it.
+fn together(replanned: &Replanned) -> Option<Check> {
+    let limit = replanned.fit.shared.clone()?;
+    let (asked, at_s) = limit.asked(&replanned.plan)?;
+    let finding = Finding::Together { limit, asked, at_s };
+    (asked > 1.0 + LITTLE).then_some(Check { level: Level::Caution, finding })
 }
 
 /// Speeds of a plan are looked at over so many of its steps: angles may be rounded.
@@ -326,7 +337,7 @@ fn gain(replanned: &Replanned, command: Option<&Commanded>) -> Option<Check> {
     let corrected = past.runs.iter().any(|run| run.corrected);
     let reasons = [
         reason(Reason::FirstCommand, is_first && !corrected),
-        reason(Reason::MachineChanged, changed(replanned)),
+        reason(Reason::MachineChanged, sends && changed(replanned)),
         reason(Reason::BrokenPromise, sends && past.trust < 1.0),
     ];
     let reasons: Vec<Reason> = reasons.into_iter().flatten().collect();

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Overall, Replanned};
 use crate::{
-    fit::Character,
+    fit::{Character, SharedLimit},
     plan::Limit,
     series::JointKind,
     workflow::{carried::Promise, plan::MarginEntry},
@@ -103,6 +103,15 @@ pub enum Finding {
     },
     /// A joint whose plan is faster than the joint was found to be.
     TooFast(TooFast),
+    /// A plan that asks for more than what its joints share.
+    Together {
+        /// What they share.
+        limit: SharedLimit,
+        /// How many times that the plan asks for at most.
+        asked: f64,
+        /// When, s.
+        at_s: f64,
+    },
     /// How well each joint is predicted.
     Trust {
         /// By joint of the plan.

@@ -1,0 +1,66 @@
+//! What a caller may say of a table in which no column looks like a joint's angle, though some come in pairs.
+
+use super::{
+    Role,
+    word::{Meaning, words},
+};
+use crate::text::shell_word;
+
+/// Pairs that are written out.
+const MOST: usize = 12;
+
+/// Options that take columns as plan and measurement whose names differ by the words of the side alone: `target_x` and `actual_x`.
+pub(super) fn offered(names: &[String]) -> Option<String> {
+    let sides: Vec<(Role, String, &String)> = names.iter().filter_map(|name| of_column(name)).collect();
+    let is = |role: Role, wanted: &Role| (role == Role::Measured) == (*wanted == Role::Measured);
+    let pairs =
+        sides.iter().filter(|(role, ..)| is(*role, &Role::Planned)).filter_map(|(_, key, planned)| {
+            let mut others =
+                sides.iter().filter(|(role, other, _)| is(*role, &Role::Measured) && other == key);
+            let (_, _, measured) = others.next().filter(|_| others.next().is_none())?;
+            Some((key, planned, measured))
+        });
+    let pairs: Vec<_> = pairs.take(MOST).collect();
+    let list = |of: &dyn Fn(&(&String, &&String, &&String)) -> String| {
+        shell_word(&pairs.iter().map(of).collect::<Vec<_>>().join(","))
+    };
+    (!pairs.is_empty()).then(|| {
+        format!(
+            "--planned {} --measured {}, with --slides {} if they are lengths of that unit, else with --degrees or --radians",
+            list(&|(key, planned, _)| format!("{key}={planned}")),
+            list(&|(key, _, measured)| format!("{key}={measured}")),
+            list(&|(key, ..)| format!("{key}=mm"))
+        )
+    })
+}
+
+/// The side that a name says, and what is left of it; `None` where it says none, or that it is of no joint for another reason.
+fn of_column(name: &String) -> Option<(Role, String, &String)> {
+    let words = words(name);
+    let role = words
+        .iter()
+        .find_map(|word| if let Meaning::Role(role) = word.meaning { Some(role) } else { None })?;
+    let left = words.iter().filter(|word| !matches!(word.meaning, Meaning::Role(_) | Meaning::Quantity(_)));
+    let key = left.map(|word| word.text.to_lowercase()).collect::<Vec<_>>().join("_");
+    (!key.is_empty() && !name.contains([',', '='])).then_some((role, key, name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_that_differ_by_the_side_alone_are_offered_as_pairs() {
+        let of = |names: &[&str]| offered(&names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>());
+        let found = of(&["time", "target_x", "target_y", "actual_x", "actual_y"]).unwrap();
+        assert!(
+            found.starts_with(
+                "--planned x=target_x,y=target_y --measured x=actual_x,y=actual_y, with --slides x=mm,y=mm "
+            ),
+            "{found}"
+        );
+        assert!(of(&["X_RIst", "X_RSol"]).unwrap().contains("--planned x=X_RSol --measured x=X_RIst"));
+        assert_eq!(of(&["step", "reference", "feedback", "err"]), None);
+        assert_eq!(of(&["a", "b"]), None);
+    }
+}

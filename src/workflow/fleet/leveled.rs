@@ -1,0 +1,157 @@
+//! The level of a joint in each run: that which is left when each start's own level is taken off.
+
+use std::collections::BTreeMap;
+
+use super::{
+    course::course,
+    history::{By, Event, Scatters, Values},
+    joint_trend::{FEWEST_RUNS, JointTrend, Level},
+    run::{Run, date, days},
+    stepped::best_step,
+};
+use crate::math::{
+    begins, column_levels, median, row_weights, step_scatter, theil_sen, trend, weighted_median,
+};
+
+/// The starts that enough runs have, as rows by run, with what each row says; and those runs. A start that scatters on
+/// all machines says little, however quiet it was on this one. Peak errors grow and scatter in proportion, those of a fast start
+/// by more: so each row is scaled to the level of the middle one, or the slowest start would say it all.
+pub(super) fn matrix(
+    metric: By,
+    values: &Values,
+    fewest: usize,
+    (joint, scatters): (&str, &Scatters),
+) -> (Vec<usize>, Vec<Vec<f64>>, Vec<f64>) {
+    let often = || values.values().filter(|of_runs| of_runs.len() >= fewest);
+    let mut runs: Vec<usize> = often().flat_map(|of_runs| of_runs.keys().copied()).collect();
+    runs.sort_unstable();
+    runs.dedup();
+    let row = |of_runs: &BTreeMap<usize, f64>| {
+        runs.iter().map(|run| of_runs.get(run).copied().unwrap_or(f64::NAN)).collect()
+    };
+    let mut rows: Vec<Vec<f64>> = often().map(row).collect();
+    let events = values.iter().filter(|(_, of_runs)| of_runs.len() >= fewest);
+    let scatter = |(event, of_runs): (&Event, &BTreeMap<usize, f64>)| {
+        let own = step_scatter(of_runs.values().copied());
+        let usual = scatters.get(&(joint.to_owned(), event.clone())).copied();
+        own.into_iter().chain(usual).reduce(f64::max)
+    };
+    let mut scatters: Vec<Option<f64>> = events.map(scatter).collect();
+    if metric == By::Peak {
+        let level = |row: &Vec<f64>| median(row.iter().copied().filter(|value| value.is_finite()).collect());
+        let levels: Vec<f64> = rows.iter().map(level).collect();
+        let middle = median(levels.clone());
+        for ((row, scatter), level) in rows.iter_mut().zip(&mut scatters).zip(levels) {
+            let share = if level > 0.0 { middle / level } else { 1.0 };
+            for value in row.iter_mut() {
+                *value *= share;
+            }
+            *scatter = scatter.map(|scatter| scatter * share);
+        }
+    }
+    let weights = row_weights(&scatters);
+    (runs, rows, weights)
+}
+
+/// One metric of one joint.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Leveled {
+    pub(super) machine: String,
+    pub(super) joint: String,
+    /// Of the starts that it is of; absent of both.
+    pub(super) direction: Option<i8>,
+    pub(super) metric: By,
+    pub(super) unit: String,
+    /// When each run began, days since 1970, and its level, whose median is zero.
+    pub(super) levels: Vec<(f64, f64)>,
+    /// What the starts are like in the middle.
+    pub(super) usual: f64,
+    /// Whether what other machines did at the same time is taken off.
+    pub(super) less_common: bool,
+    /// By start, and by instant of a run.
+    pub(super) rows: Vec<Vec<f64>>,
+    pub(super) weights: Vec<f64>,
+    pub(super) at_days: Vec<f64>,
+    /// The log of each of these.
+    pub(super) logs: Vec<String>,
+}
+
+impl Leveled {
+    /// Without its names; `None` for too few runs.
+    pub(super) fn of(metric: By, runs: &[Run], values: &Values, scatters: (&str, &Scatters)) -> Option<Self> {
+        let (own, rows, weights) = matrix(metric, values, FEWEST_RUNS, scatters);
+        let runs: Vec<&Run> = own.iter().filter_map(|run| runs.get(*run)).collect();
+        let at_days: Vec<f64> = runs.iter().map(|run| days(run)).collect();
+        let levels = points(&at_days, &column_levels(&rows, &weights, own.len()));
+        let usual = median(rows.iter().flatten().copied().filter(|value| value.is_finite()).collect());
+        let logs = runs.iter().map(|run| run.log.clone()).collect();
+        (levels.len() >= FEWEST_RUNS).then(|| Self {
+            metric,
+            levels,
+            usual,
+            rows,
+            weights,
+            at_days,
+            logs,
+            ..Self::default()
+        })
+    }
+
+    /// Less what the other machines did at the same instants.
+    pub(super) fn less(mut self, common: Option<Vec<f64>>) -> Self {
+        let Some(common) = common.filter(|common| common.len() == self.levels.len()) else { return self };
+        // A run without any value has no level.
+        let known: Vec<(f64, f64)> = self.levels.iter().map(|level| level.0).zip(common).collect();
+        let of = |at: f64| known.iter().find(|one| (one.0 - at).abs() <= 0.0).map_or(0.0, |one| one.1);
+        for row in &mut self.rows {
+            row.iter_mut().zip(&self.at_days).for_each(|(value, at)| *value -= of(*at));
+        }
+        // Starts of two plans that no run has both of share no level: what is common must be gone before their levels are made alike.
+        let levels = column_levels(&self.rows, &self.weights, self.at_days.len());
+        self.levels = points(&self.at_days, &levels);
+        self.less_common = true;
+        self
+    }
+
+    /// Its trend; `None` where all runs are of one instant.
+    pub(super) fn trend(&self) -> Option<JointTrend> {
+        let Self { rows, weights, levels, at_days, .. } = self;
+        let slopes = rows.iter().map(|row| theil_sen(&points(at_days, row))).zip(weights.iter().copied());
+        let slope = weighted_median(slopes.collect());
+        let found = trend(levels).filter(|_| slope.is_finite())?;
+        let [low, high] = found.interval;
+        let level = |(at_days, level): &(f64, f64)| {
+            let log = self.at_days.iter().position(|at| (at - at_days).abs() <= 0.0);
+            let log = log.and_then(|at| self.logs.get(at)).cloned().unwrap_or_default();
+            Level { at_days: *at_days, value: level + self.usual, log, page: None }
+        };
+        let early =
+            rows.iter().flat_map(|row| points(at_days, row).into_iter().take(3)).map(|(_, value)| value);
+        Some(JointTrend {
+            machine: self.machine.clone(),
+            joint: self.joint.clone(),
+            direction: self.direction,
+            metric: self.metric,
+            unit: self.unit.clone(),
+            slope_per_day: slope,
+            interval_95: [low.min(slope), high.max(slope)],
+            p_value: found.p,
+            q_value: 1.0,
+            step: best_step(levels),
+            course: course(&levels.iter().map(|(at, level)| (*at, level + self.usual)).collect::<Vec<_>>()),
+            less_common: self.less_common,
+            since: begins(levels).and_then(date),
+            starts: rows.len(),
+            runs: levels.len(),
+            days: levels.last()?.0 - levels.first()?.0,
+            level: median(early.collect()),
+            levels: levels.iter().map(level).collect(),
+            ..JointTrend::default()
+        })
+    }
+}
+
+/// Those that are known.
+fn points(at: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
+    at.iter().copied().zip(values.iter().copied()).filter(|(_, value)| value.is_finite()).collect()
+}

@@ -1,0 +1,94 @@
+//! The levels of a joint before and after something that was done.
+
+use std::collections::BTreeMap;
+
+use super::{
+    history::{By, History, Scatters, Values},
+    leveled::matrix,
+    run::date,
+    window::Window,
+};
+use crate::{
+    math::{column_levels, median, pieces},
+    units::SECONDS_PER_DAY,
+};
+
+/// A level that changes by itself by chance with a smaller probability does so.
+const SURELY: f64 = 0.01;
+/// Runs of either side, at least.
+const FEWEST_OF_A_SIDE: usize = 3;
+
+/// Levels of the runs of one machine before and after, and the median value before.
+pub(super) struct Sides {
+    pub(super) before: Vec<f64>,
+    pub(super) after: Vec<f64>,
+    pub(super) level: f64,
+    pub(super) starts: usize,
+    /// When each run of either side began, microseconds since 1970.
+    at_us: [Vec<i64>; 2],
+}
+
+impl Sides {
+    pub(super) fn of(
+        history: &History,
+        metric: By,
+        scatters: (&str, &Scatters),
+        values: &Values,
+        window: Window,
+    ) -> Self {
+        let is_after = |run: &usize| history.runs.get(*run).is_some_and(|run| window.is_after(run));
+        let tells = |run: &usize| history.runs.get(*run).is_some_and(|run| window.holds(run));
+        // A start that one side lacks tells nothing of the change.
+        let both = |of: &BTreeMap<usize, f64>| {
+            let after = of.keys().filter(|run| is_after(run)).count();
+            after > 0 && after < of.len()
+        };
+        let told = values.iter().map(|(event, of)| {
+            let of = of.iter().filter(|(run, _)| tells(run)).map(|(run, value)| (*run, *value));
+            (event.clone(), of.collect::<BTreeMap<usize, f64>>())
+        });
+        let values: Values = told.filter(|(_, of)| both(of)).collect();
+        let (runs, rows, weights) = matrix(metric, &values, 2, scatters);
+        let levels = column_levels(&rows, &weights, runs.len());
+        let side = |after: bool| -> (Vec<f64>, Vec<i64>) {
+            let levels =
+                runs.iter().zip(&levels).filter(|(run, level)| is_after(run) == after && level.is_finite());
+            let at = |run: &usize| history.runs.get(*run).map_or(0, |run| run.started_us);
+            levels.map(|(run, level)| (*level, at(run))).unzip()
+        };
+        let early = values.values().flat_map(|of| of.iter().filter(|(run, _)| !is_after(run)));
+        let level = median(early.map(|(_, value)| *value).collect());
+        let ((before, before_us), (after, after_us)) = (side(false), side(true));
+        Self { before, after, level, starts: rows.len(), at_us: [before_us, after_us] }
+    }
+
+    pub(super) fn change(&self) -> Option<f64> {
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        (self.before.len() >= 2 && self.after.len() >= 2).then(|| mean(&self.after) - mean(&self.before))
+    }
+
+    /// The window narrowed to what the level was just before and just after, where it changed earlier or later by itself, and the
+    /// ends of that, UTC.
+    pub(super) fn at_once(&self, window: Window) -> (Window, [Option<String>; 2]) {
+        let of = |levels: &[f64], at_us: &[i64], is_before: bool| {
+            let points: Vec<(f64, f64)> = at_us
+                .iter()
+                .map(|us| *us as f64 / 1e6 / SECONDS_PER_DAY)
+                .zip(levels.iter().copied())
+                .collect();
+            let found = pieces(&points).filter(|found| found.p < SURELY)?;
+            let near = if is_before { found.pieces.last()? } else { found.pieces.first()? };
+            let runs = near.points.clone();
+            // Of one that goes on changing, its end.
+            let count =
+                if near.slope.abs() > 0.0 { (runs.len() / 3).max(FEWEST_OF_A_SIDE) } else { runs.len() };
+            let kept = count.max(FEWEST_OF_A_SIDE).min(levels.len());
+            (kept < levels.len())
+                .then(|| if is_before { at_us[levels.len() - kept] } else { at_us[kept - 1] })
+        };
+        let from_us = of(&self.before, &self.at_us[0], true);
+        let until_us = of(&self.after, &self.at_us[1], false);
+        let said = [from_us, until_us].map(|us| date(us? as f64 / 1e6 / SECONDS_PER_DAY));
+        (window.within(from_us, until_us), said)
+    }
+}
