@@ -112,10 +112,10 @@ pub fn pieces(points: &[(f64, f64)]) -> Option<Pieces> {
     let mut best: Vec<(f64, usize, bool)> = vec![(0.0, 0, false)];
     for to in 1..=n {
         let mut least = (f64::INFINITY, 0, false);
-        for from in 0..to {
+        for (from, before) in best.iter().enumerate() {
             for is_line in [false, true] {
                 if let Some(own) =
-                    of(from, to, is_line).map(|own| best[from].0 + own).filter(|own| *own < least.0)
+                    of(from, to, is_line).map(|own| before.0 + own).filter(|own| *own < least.0)
                 {
                     least = (own, from, is_line);
                 }
@@ -137,7 +137,6 @@ pub fn pieces(points: &[(f64, f64)]) -> Option<Pieces> {
     let freedom = (n as f64 - numbers - breaks as f64).max(1.0);
     let left = (squares / freedom).max(variance.min(quantum(&values).powi(2) / 12.0));
     let t = StudentsT::new(0.0, 1.0, freedom).ok()?.inverse_cdf(0.975);
-    let mut drawn = drawn;
     for k in 1..drawn.len() {
         let joined = join(points, &drawn[k - 1], &drawn[k], middle);
         // One number less than if it jumped there.
@@ -231,12 +230,10 @@ fn least_squares(rows: impl Iterator<Item = ([f64; 3], f64)>) -> Option<[f64; 3]
             }
         }
     }
-    for k in 0..3 {
-        if a[k][k] <= 0.0 {
-            a[k][k] = 1.0;
-        }
+    let mut a = nalgebra::Matrix3::from(a);
+    for k in (0..3).filter(|k| a[(*k, *k)] <= 0.0).collect::<Vec<usize>>() {
+        a[(k, k)] = 1.0;
     }
-    let a = nalgebra::Matrix3::from(a);
     let found = a.cholesky()?.solve(&nalgebra::Vector3::from(b));
     Some([found[0], found[1], found[2]])
 }

@@ -42,7 +42,9 @@ pub(super) fn onset(
     let least = likely.iter().map(|one| one.1).fold(f64::INFINITY, f64::min);
     let freedom = middles.len().saturating_sub(3).max(1) as f64;
     let unlike = (2.0 * least / freedom).max(1.0);
-    likely.iter_mut().for_each(|one| one.1 /= unlike);
+    for one in &mut likely {
+        one.1 /= unlike;
+    }
     let [low_s, at_s, high_s] = quantiles(likely, [0.025, 0.5, 0.975])?;
     Some(Onset { at_s, interval_s: [low_s - rules.onset_step_s, high_s + rules.onset_step_s] })
 }

@@ -134,6 +134,6 @@ mod tests {
                 wrong(&rounded)
             );
         }
-        assert_eq!(unrounded(&[0.0, 1.0, 2.0], &[1.0; 3], &[0..3], 0.1), [1.0; 3]);
+        assert_eq!(unrounded(&[0.0, 1.0, 2.0], &[1.0; 3], std::slice::from_ref(&(0..3)), 0.1), [1.0; 3]);
     }
 }

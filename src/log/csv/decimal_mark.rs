@@ -46,7 +46,7 @@ mod tests {
     #[test]
     fn joints_that_stand_in_whole_numbers_leave_the_decimal_mark_open() {
         let row = |k: i32, mark: &str| {
-            let value = if k < 40 { "10".to_owned() } else { format!("10{mark}{:03}", k) };
+            let value = if k < 40 { "10".to_owned() } else { format!("10{mark}{k:03}") };
             format!("{};{value};{value}\n", 10 * k)
         };
         for mark in [",", "."] {

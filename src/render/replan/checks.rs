@@ -1,7 +1,7 @@
 //! "Safe to send?" in words.
 
 use crate::{
-    fit::{Character, LEAST_SKILL},
+    fit::{Character, LEAST_SKILL, SharedLimit},
     plan::Limit,
     render::{
         fit::shared,
@@ -114,6 +114,14 @@ fn name(finding: &Finding) -> &'static str {
     }
 }
 
+fn together(limit: &SharedLimit, asked: f64, at_s: f64) -> String {
+    format!(
+        "{} The plan asks for {asked:.2} times what they share, most at {at_s:.1} s: no command mends that, more time or fewer joints at \
+         once do.",
+        shared(limit)
+    )
+}
+
 fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
     let shown = |rad: f64| position(kind, rad);
     let good = level == Level::Good;
@@ -157,11 +165,7 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
             position(*kind, *own),
             position(*kind, *most)
         ),
-        Finding::Together { limit, asked, at_s } => format!(
-            "{} The plan asks for {asked:.2} times what they share, most at {at_s:.1} s: no command mends that, more time or fewer joints at \
-             once do.",
-            shared(limit)
-        ),
+        Finding::Together { limit, asked, at_s } => together(limit, *asked, *at_s),
         Finding::Trust { joints } => trust(joints),
         Finding::Promise { log, promised, measured_mean_peak_rad } => format!(
             "{log} promised a mean peak error of {}, in nine runs of ten below {}; {} came{}.",

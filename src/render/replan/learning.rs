@@ -45,7 +45,7 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
         KeepReason::ExpectedWorse { expected_rad } => {
             format!("; another correction is expected to give {}.", shown(*expected_rad))
         }
-        KeepReason::Undone { before_rad } => return Some(undone(replanned, shown(*before_rad), last)),
+        KeepReason::Undone { before_rad } => return Some(undone(replanned, &shown(*before_rad), &last)),
     };
     let joints = replanned.command.iter().flat_map(|command| &command.joints);
     let other = joints.filter(|joint| matches!(joint.step, Step::Kept { from, .. } if from != *run));
@@ -67,7 +67,7 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
 }
 
 /// What to do where all that a command gained was undone in the newest run.
-fn undone(replanned: &Replanned, before: String, now: String) -> String {
+fn undone(replanned: &Replanned, before: &str, now: &str) -> String {
     let log = replanned.past.runs.last().map_or("the last run", |run| &run.log);
     format!(
         "Look at the machine, then send the command of {log} again: it gave a mean peak of {before} before and {now} there, about as \

@@ -75,7 +75,10 @@ impl Common {
 }
 
 /// Common courses by what they leave out: one machine, where that could bend them.
-pub(super) struct Commons(Vec<(By, Option<i8>, Option<String>, Option<Common>)>);
+pub(super) struct Commons(Vec<One>);
+
+/// The metric and the direction of starts, the machine that is left out, and the course.
+type One = (By, Option<i8>, Option<String>, Option<Common>);
 
 impl Commons {
     /// Of all joints, each with its metric and direction.
@@ -104,7 +107,7 @@ impl Commons {
 
     /// What the other machines did at the instants of a joint, in its unit.
     pub(super) fn at(&self, joint: &Leveled) -> Option<Vec<f64>> {
-        let own = |(metric, direction, machine, _): &&(By, Option<i8>, Option<String>, Option<Common>)| {
+        let own = |(metric, direction, machine, _): &&One| {
             (*metric, *direction) == (joint.metric, joint.direction)
                 && machine.as_ref().is_none_or(|machine| *machine == joint.machine)
         };
