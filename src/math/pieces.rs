@@ -39,6 +39,8 @@ pub struct Pieces {
     pub pieces: Vec<Piece>,
     /// Probability of such pieces by chance where all is one level: that of Fisher's F, times the ways to place them.
     pub p: f64,
+    /// The same where all is one line.
+    pub p_of_line: f64,
 }
 
 /// Sums over points from the first on.
@@ -172,17 +174,19 @@ pub fn pieces(points: &[(f64, f64)]) -> Option<Pieces> {
         });
         before = Some((ends[1], error[1]));
     }
-    let all = sums[n].drawn(false).squares;
-    let more = numbers - 1.0 + breaks as f64;
-    let p = if more > 0.0 {
-        let ratio = ((all - left * freedom) / more).max(0.0) / left;
+    let places = (1..=breaks).map(|k| (n - k) as f64 / k as f64).product::<f64>();
+    // By chance where all is one level, or one line.
+    let by_chance = |is_line: bool| {
+        let more = numbers + breaks as f64 - if is_line { 2.0 } else { 1.0 };
+        if more <= 0.0 {
+            return 1.0;
+        }
+        let ratio = ((sums[n].drawn(is_line).squares - left * freedom) / more).max(0.0) / left;
         let one = FisherSnedecor::new(more, freedom).map_or(1.0, |f| f.sf(ratio));
-        let places = (1..=breaks).map(|k| (n - k) as f64 / k as f64).product::<f64>();
         (one * places * 2.0_f64.powf(breaks as f64 + 1.0)).min(1.0)
-    } else {
-        1.0
     };
-    Some(Pieces { pieces, p })
+    let [p, p_of_line] = [false, true].map(by_chance);
+    Some(Pieces { pieces, p, p_of_line })
 }
 
 /// A stretch of the points, whether a line is drawn through it, and that.

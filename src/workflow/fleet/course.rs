@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::run::date;
 use crate::math::pieces;
 
+/// Pieces that a line makes by chance more often are one line.
+const NO_LINE: f64 = 0.01;
+
 /// One change of a level.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -42,7 +45,7 @@ pub(super) struct Course {
 
 /// The course of the levels of runs `(days, level)`; `None` where it is one level or one line.
 pub(super) fn course(levels: &[(f64, f64)]) -> Option<Course> {
-    let found = pieces(levels).filter(|found| found.pieces.len() > 1)?;
+    let found = pieces(levels).filter(|found| found.pieces.len() > 1 && found.p_of_line < NO_LINE)?;
     let at = |run: usize| levels[run].0;
     let (mut changes, mut line) = (Vec::new(), Vec::new());
     for piece in &found.pieces {

@@ -30,11 +30,18 @@ const RELEVANT: f64 = 0.02;
 pub(super) fn judge(trends: &mut [JointTrend]) {
     let tell = stand_out(trends);
     let p_trend = trends.iter().map(|trend| trend.p_value);
-    let p_step = trends.iter().map(|trend| trend.step.as_ref().map_or(1.0, |step| step.p_value));
-    let p_course = trends.iter().map(|trend| trend.course.as_ref().map_or(1.0, |course| course.p_value));
-    let q = false_discovery(&p_trend.chain(p_step).chain(p_course).collect::<Vec<f64>>());
-    let (q_trend, q_others) = q.split_at(trends.len());
-    let (q_step, q_course) = q_others.split_at(trends.len());
+    let q = false_discovery(&p_trend.chain(trends.iter().map(p_change)).collect::<Vec<f64>>());
+    let (q_trend, q_change) = q.split_at(trends.len());
+    // Of the two ways to change the one that chance makes more often is less sure by as much.
+    let q_of = |p: fn(&JointTrend) -> Option<f64>| -> Vec<f64> {
+        let each = trends.iter().zip(q_change).map(|(trend, q)| {
+            let share = p(trend).map_or(f64::INFINITY, |p| p / least_p(trend).max(f64::MIN_POSITIVE));
+            (q * share.max(1.0)).min(1.0)
+        });
+        each.collect()
+    };
+    let (q_step, q_course) = (q_of(p_step), q_of(p_course));
+    let (q_step, q_course) = (&q_step[..], &q_course[..]);
     let at_step = |own: &JointTrend| Some(own.levels.get(own.step.as_ref()?.runs_before)?.at_days);
     let steps = |(own, q): (&JointTrend, &f64)| {
         if *q < MOST_FALSE { elsewhere(trends, own, at_step(own)?) } else { None }
@@ -62,7 +69,9 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
         if let Some((last, course)) = changes.last().zip(trend.course.as_ref()) {
             (trend.found, trend.is_step) = (true, last.per_day.is_none());
             (trend.slope_per_day, trend.interval_95) = course.ends;
-            if last.per_day.is_none() {
+            // What grew and then stayed changed within days.
+            trend.is_step |= course.ends.0.abs() <= 0.0;
+            if trend.is_step {
                 trend.step = Some(LevelStep::of(last, (course.p_value, q_course[k])));
                 trend.since.clone_from(&last.by);
             } else {
@@ -78,6 +87,24 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
             trend.levels.clear();
         }
     }
+}
+
+fn p_step(trend: &JointTrend) -> Option<f64> {
+    trend.step.as_ref().map(|step| step.p_value)
+}
+
+fn p_course(trend: &JointTrend) -> Option<f64> {
+    trend.course.as_ref().map(|course| course.p_value)
+}
+
+fn least_p(trend: &JointTrend) -> f64 {
+    p_step(trend).into_iter().chain(p_course(trend)).fold(1.0, f64::min)
+}
+
+/// Probability of a step or a course by chance, of which the surer one counts.
+fn p_change(trend: &JointTrend) -> f64 {
+    let ways = p_step(trend).into_iter().chain(p_course(trend)).count() as f64;
+    (ways.max(1.0) * least_p(trend)).min(1.0)
 }
 
 /// Whether a change is clearly more than that of others: the middle of these, and their spread.
@@ -253,6 +280,12 @@ mod tests {
         assert!(
             matches!(changes.as_slice(), [up, down] if (up - 0.6).abs() < 0.05 && (down + 0.6).abs() < 0.05),
             "{found:?}"
+        );
+        let found = judged(|day| 0.03 * (day - 60.0).clamp(0.0, 30.0), 150);
+        let step = found.step.as_ref().unwrap();
+        assert!(
+            found.is_step && (step.change - 0.9).abs() < 0.1 && !step.is_sure(),
+            "it grew, and stays: {found:?}"
         );
         let found = judged(|_| 0.0, 150);
         assert!(!found.found && found.changes.is_empty());

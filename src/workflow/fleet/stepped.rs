@@ -44,7 +44,8 @@ impl LevelStep {
             interval_95: change.interval_95,
             p_value,
             q_value,
-            left: 0.0,
+            // What took days is no jump.
+            left: if change.per_day.is_some() { 1.0 } else { 0.0 },
         }
     }
 
