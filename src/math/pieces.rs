@@ -27,7 +27,7 @@ pub struct Piece {
     pub slope: f64,
     /// The 95 % interval of that, by Student's t, where the piece is known to be there.
     pub interval: [f64; 2],
-    /// Its value at its first point less that at the last one of the piece before, and the 95 % interval of that, where the course
+    /// Its value less that of the piece before, where they are nearest between their points, and the 95 % interval, where the course
     /// jumps there.
     pub jump: Option<(f64, [f64; 2])>,
 }
@@ -157,13 +157,21 @@ pub fn pieces(points: &[(f64, f64)]) -> Option<Pieces> {
             if is_line && drawn.spread > 0.0 { (at - drawn.mean[0]).powi(2) / drawn.spread } else { 0.0 };
         left * (1.0 / points as f64 + aside)
     };
-    let mut before: Option<(f64, f64)> = None;
+    // Its last value and slope, when that was, and the variance of the value.
+    let mut before: Option<[f64; 4]> = None;
     for (range, is_line, drawn) in drawn {
         let at = [points[range.start].0 - middle[0], points[range.end - 1].0 - middle[0]];
         let ends = at.map(|at| middle[1] + drawn.mean[1] + drawn.slope * (at - drawn.mean[0]));
         let error = at.map(|at| known(&drawn, is_line, at, range.len()));
         let half = if drawn.spread > 0.0 { t * (left / drawn.spread).sqrt() } else { 0.0 };
-        let jump = before.map(|(value, of_value)| (ends[0] - value, (error[0] + of_value).sqrt()));
+        let jump = before.map(|[value, slope, last, of_value]| {
+            // Lines that meet between the two points do not jump there.
+            let gap = at[0] - last;
+            let apart = [ends[0] - drawn.slope * gap - value, ends[0] - value - slope * gap];
+            let least = if apart[0].abs() < apart[1].abs() { apart[0] } else { apart[1] };
+            let jump = if apart[0] * apart[1] < 0.0 { 0.0 } else { least };
+            (jump, (error[0] + of_value).sqrt())
+        });
         let jump = jump.filter(|(jump, error)| jump.abs() > JUMPS * error);
         pieces.push(Piece {
             points: range,
@@ -172,7 +180,7 @@ pub fn pieces(points: &[(f64, f64)]) -> Option<Pieces> {
             interval: [drawn.slope - half, drawn.slope + half],
             jump: jump.map(|(jump, error)| (jump, [jump - t * error, jump + t * error])),
         });
-        before = Some((ends[1], error[1]));
+        before = Some([ends[1], drawn.slope, at[1], error[1]]);
     }
     let places = (1..=breaks).map(|k| (n - k) as f64 / k as f64).product::<f64>();
     // By chance where all is one level, or one line.
