@@ -164,14 +164,8 @@ pub fn pieces(points: &[(f64, f64)]) -> Option<Pieces> {
         let ends = at.map(|at| middle[1] + drawn.mean[1] + drawn.slope * (at - drawn.mean[0]));
         let error = at.map(|at| known(&drawn, is_line, at, range.len()));
         let half = if drawn.spread > 0.0 { t * (left / drawn.spread).sqrt() } else { 0.0 };
-        let jump = before.map(|[value, slope, last, of_value]| {
-            // Lines that meet between the two points do not jump there.
-            let gap = at[0] - last;
-            let apart = [ends[0] - drawn.slope * gap - value, ends[0] - value - slope * gap];
-            let least = if apart[0].abs() < apart[1].abs() { apart[0] } else { apart[1] };
-            let jump = if apart[0] * apart[1] < 0.0 { 0.0 } else { least };
-            (jump, (error[0] + of_value).sqrt())
-        });
+        let own = [ends[0], drawn.slope, at[0], error[0]];
+        let jump = before.map(|before| apart(before, own));
         let jump = jump.filter(|(jump, error)| jump.abs() > JUMPS * error);
         pieces.push(Piece {
             points: range,
@@ -195,6 +189,17 @@ pub fn pieces(points: &[(f64, f64)]) -> Option<Pieces> {
     };
     let [p, p_of_line] = [false, true].map(by_chance);
     Some(Pieces { pieces, p, p_of_line })
+}
+
+/// By how much a line leaves another one where they are nearest between their ends, and the standard error; each by its value there, its
+/// slope, when that is, and the variance of the value.
+fn apart(before: [f64; 4], own: [f64; 4]) -> (f64, f64) {
+    let gap = own[2] - before[2];
+    let apart = [own[0] - own[1] * gap - before[0], own[0] - before[0] - before[1] * gap];
+    let least = if apart[0].abs() < apart[1].abs() { apart[0] } else { apart[1] };
+    // Lines that meet between the two points do not jump there.
+    let jump = if apart[0] * apart[1] < 0.0 { 0.0 } else { least };
+    (jump, (before[3] + own[3]).sqrt())
 }
 
 /// A stretch of the points, whether a line is drawn through it, and that.
