@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
-use super::{SIGMA_PER_MAD, mad};
+use super::{SIGMA_PER_MAD, mad, statistic::quantum};
 
 /// Points of a level and of a line, at least: fewer are anything.
 const FEWEST: [usize; 2] = [2, 4];
@@ -261,14 +261,6 @@ fn variance(values: &[f64]) -> Option<f64> {
     let variance = (SIGMA_PER_MAD * mad(&steps)).powi(2) / 2.0;
     let least = quantum(values).powi(2) / 12.0;
     variance.is_finite().then_some(variance.max(least))
-}
-
-/// The smallest difference between two of the values: those that repeat are known no better.
-fn quantum(values: &[f64]) -> f64 {
-    let mut ascending = values.to_vec();
-    ascending.sort_unstable_by(f64::total_cmp);
-    let gaps = ascending.windows(2).map(|two| two[1] - two[0]).filter(|gap| *gap > 0.0);
-    gaps.reduce(f64::min).unwrap_or(0.0)
 }
 
 #[cfg(test)]

@@ -65,6 +65,14 @@ pub fn mad(values: &[f64]) -> f64 {
     median(values.iter().map(|v| (v - centre).abs()).collect())
 }
 
+/// The smallest difference between two of the values: those that repeat are known no better.
+pub(super) fn quantum(values: &[f64]) -> f64 {
+    let mut ascending = values.to_vec();
+    ascending.sort_unstable_by(f64::total_cmp);
+    let gaps = ascending.windows(2).map(|two| two[1] - two[0]).filter(|gap| *gap > 0.0);
+    gaps.reduce(f64::min).unwrap_or(0.0)
+}
+
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "exact by construction")]
 mod tests {

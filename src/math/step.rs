@@ -2,6 +2,8 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+use super::statistic::quantum;
+
 /// Points on each side of a step, at least.
 const FEWEST: usize = 3;
 
@@ -49,14 +51,6 @@ pub fn step(values: &[f64]) -> Option<Step> {
         p: (one * tried as f64).min(1.0),
         squares,
     })
-}
-
-/// The smallest difference between two of the values: those that repeat are known no better.
-fn quantum(values: &[f64]) -> f64 {
-    let mut ascending = values.to_vec();
-    ascending.sort_unstable_by(f64::total_cmp);
-    let gaps = ascending.windows(2).map(|two| two[1] - two[0]).filter(|gap| *gap > 0.0);
-    gaps.reduce(f64::min).unwrap_or(0.0)
 }
 
 #[cfg(test)]

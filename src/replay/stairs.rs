@@ -5,6 +5,7 @@ use super::{
     Rules,
     motion::Motion,
     onset::{Onset, RISES, Rise, SMOOTH, quantiles},
+    unrounded::{NONE, climbs_to},
 };
 use crate::series::Pair;
 
@@ -12,8 +13,6 @@ use crate::series::Pair;
 const MOST: usize = 6;
 /// Ramps of slow plans, s.
 const RAMPS: [Rise; 3] = [Rise::Ramp(0.4), Rise::Ramp(0.8), Rise::Ramp(1.6)];
-/// A change below this share of a step is none.
-const NONE: f64 = 0.01;
 /// What a rise of another shape lies off a middle by, in steps.
 const SHAPE: f64 = 0.03;
 /// A rest lies within half a step of its value; so much more is let pass, in steps.
@@ -76,13 +75,9 @@ fn middles(pair: &Pair, motion: &Motion, step: f64) -> Option<Vec<Middle>> {
             at += 1;
             continue;
         }
-        // A plan of fewer samples than the measurement climbs a step in several of them.
         let from = at - 1;
-        let height = |to: usize| f64::from(motion.direction) * (x[to] - x[from]);
-        while at + 1 < end && height(at) < (1.0 - NONE) * step && change(pair, motion, at + 1) > NONE * step {
-            at += 1;
-        }
-        heights.push(height(at));
+        at = climbs_to(x, at, end, step);
+        heights.push(f64::from(motion.direction) * (x[at] - x[from]));
         middles.push(Middle {
             t_s: 0.5 * (t_s[from] + t_s[at]),
             travel: f64::from(motion.direction) * (0.5 * (x[from] + x[at]) - x[first - 1]),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 /// A change below this share of a step is none.
-const NONE: f64 = 0.01;
+pub(super) const NONE: f64 = 0.01;
 /// A value that stays so many times as long as those beside it is a rest.
 const RESTS: f64 = 3.0;
 
@@ -46,17 +46,23 @@ fn passes(t_s: &[f64], x: &[f64], segment: &Range<usize>, step: f64) -> Vec<Pass
             at += 1;
             continue;
         }
-        // A plan of fewer samples than the measurement climbs a step in several of them.
         let from = at - 1;
-        let goes_on =
-            |k: usize| k < segment.end && change(k) * change(from + 1) > 0.0 && change(k).abs() > NONE * step;
-        while (x[at] - x[from]).abs() < (1.0 - NONE) * step && goes_on(at + 1) {
-            at += 1;
-        }
+        at = climbs_to(x, at, segment.end, step);
         found.push(Passes { t_s: 0.5 * (t_s[from] + t_s[at]), from: x[from], to: x[at] });
         at += 1;
     }
     found
+}
+
+/// The sample with which a step ends that begins with one: a plan of fewer samples than the measurement climbs it in several.
+pub(super) fn climbs_to(x: &[f64], begins: usize, end: usize, step: f64) -> usize {
+    let change = |k: usize| x[k] - x[k - 1];
+    let goes_on = |k: usize| k < end && change(k) * change(begins) > 0.0 && change(k).abs() > NONE * step;
+    let mut at = begins;
+    while (x[at] - x[begins - 1]).abs() < (1.0 - NONE) * step && goes_on(at + 1) {
+        at += 1;
+    }
+    at
 }
 
 /// The corners of the lines: a rest is left, and come to, as fast as the steps beside it go.

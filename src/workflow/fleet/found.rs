@@ -6,7 +6,7 @@ use std::{collections::BTreeMap, path::Path};
 use super::{
     course::Change,
     history::By,
-    joint_trend::{FEWEST_RUNS, JointTrend, MOST_FALSE},
+    joint_trend::{FEWEST_OF_A_SIDE, FEWEST_RUNS, JointTrend, MOST_FALSE},
     stepped::LevelStep,
 };
 use crate::math::{SIGMA_PER_MAD, false_discovery, mad, mean, median, theil_sen};
@@ -19,8 +19,6 @@ const FEWEST_JOINTS: usize = 10;
 const FEWEST_OF_STEPS: usize = 4;
 /// Half of a 95 % interval, in standard deviations.
 const SIGMAS_OF_95: f64 = 1.96;
-/// Runs before a step, and after it, that tell how others changed then, at least.
-const FEWEST_OF_A_SIDE: usize = 3;
 /// Days that are this share of others are nearly the same ones.
 const MOST_OF_IT: f64 = 0.9;
 /// A step, or what a trend makes from the first run to the last, that is a smaller share of the level is of no concern.

@@ -12,6 +12,9 @@ use super::{
 /// Runs of one plan, at least: fewer cannot prove a trend.
 pub(super) const FEWEST_RUNS: usize = 5;
 
+/// Runs on either side of a change that tell what it is, at least.
+pub(super) const FEWEST_OF_A_SIDE: usize = 3;
+
 /// False discoveries among what is found, at most.
 pub(super) const MOST_FALSE: f64 = 0.05;
 

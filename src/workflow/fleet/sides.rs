@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{
     history::{By, History, Scatters, Values},
+    joint_trend::FEWEST_OF_A_SIDE,
     leveled::matrix,
     run::date,
     window::Window,
@@ -15,8 +16,6 @@ use crate::{
 
 /// A level that changes by itself by chance with a smaller probability does so.
 const SURELY: f64 = 0.01;
-/// Runs of either side, at least.
-const FEWEST_OF_A_SIDE: usize = 3;
 
 /// Levels of the runs of one machine before and after, and the median value before.
 pub(super) struct Sides {
