@@ -26,8 +26,9 @@ const FITTED: f64 = 0.08;
 /// Share of the time in which two or more move that is at the limit, at least, and beyond it, at most.
 const OFTEN: f64 = 0.38;
 const BEYOND: f64 = 0.02;
-/// How much the share of a joint varies at the limit, as a standard deviation, for two joints at least.
+/// How much the share of a joint varies at the limit, as a standard deviation, for two joints at least; of many joints each has less.
 const VARIES: f64 = 0.08;
+const VARIES_OF_ALL: f64 = 0.24;
 /// What is asked for at nine tenths of the instants is less than this many times the limit, unless joints are held back.
 const ASKED: f64 = 1.05;
 /// Stretches at the limit, at least; those a second apart are two.
@@ -173,7 +174,7 @@ pub(super) fn shared(joints: &[(String, JointKind)], logs: &[Observation<'_>]) -
     let varies = |joint: &usize| {
         let shares: Vec<f64> =
             near.speed_rad_s.iter().map(|speeds| weights[*joint] * speeds[*joint]).collect();
-        crate::math::deviation(&shares) > VARIES
+        crate::math::deviation(&shares) > VARIES.min(VARIES_OF_ALL / names.len() as f64)
     };
     // A plan that is made for the limit is at it and held back by nothing.
     let asked = logs.iter().flat_map(|log| {
