@@ -1,6 +1,6 @@
 //! The answers of a fleet in sentences and tables.
 
-use super::{day, name, shown, shown_change, shown_unit};
+use super::{day, name, shown, shown_change, shown_rate, shown_unit};
 use crate::{
     render::{
         kit::{Document, Id, NONE, Section, Sentence, Table, counted, percent, probability},
@@ -11,6 +11,10 @@ use crate::{
         Change, Drift, Effect, GateResult, Gated, JointEffect, JointTrend, LevelStep, Worst, WorstJoint,
     },
 };
+
+fn interval_a_day(unit: &str, [low, high]: [f64; 2]) -> String {
+    format!("{} to {}", shown_rate(unit, low), shown_rate(unit, high))
+}
 
 fn interval(unit: &str, [low, high]: [f64; 2]) -> String {
     format!("{} to {}", shown_change(unit, low), shown_change(unit, high))
@@ -63,8 +67,11 @@ pub(super) fn step_of(trend: &JointTrend) -> Option<&LevelStep> {
 pub(super) fn stepped(trend: &JointTrend, step: &LevelStep) -> String {
     let unit = shown_unit(&trend.unit);
     let days = [&step.after, &step.by].map(|at| at.as_deref().map_or(NONE, day));
+    let within = step.within_95.as_ref().map(|[from, to]| [day(from), day(to)]);
+    let within = within.filter(|[from, to]| *from < days[0] || *to > days[1]);
+    let within = within.map_or(String::new(), |[from, to]| format!(", surely between {from} and {to}"));
     format!(
-        "{} {unit} from {} to {} ({} {unit}, 95 %)",
+        "{} {unit} from {} to {}{within} ({} {unit}, 95 %)",
         shown_change(&trend.unit, step.change),
         days[0],
         days[1],
@@ -82,7 +89,7 @@ fn before(trend: &JointTrend) -> String {
         let days = [&change.after, &change.by].map(|at| at.as_deref().map_or(NONE, day));
         let by = shown_change(&trend.unit, change.change);
         let how = match change.per_day {
-            Some((slope, _)) => format!(" evenly, {} {unit} a day", shown_change(&trend.unit, slope)),
+            Some((slope, _)) => format!(" evenly, {} {unit} a day", shown_rate(&trend.unit, slope)),
             None => String::new(),
         };
         format!("{by} {unit} from {} to {}{how}", days[0], days[1])
@@ -115,8 +122,8 @@ fn said_last(trend: &JointTrend) -> String {
         trend.machine,
         trend.joint_and_direction(),
         name(trend.metric),
-        shown_change(&trend.unit, trend.slope_per_day.abs()).trim_start_matches('+'),
-        interval(&trend.unit, trend.interval_95),
+        shown_rate(&trend.unit, trend.slope_per_day.abs()).trim_start_matches('+'),
+        interval_a_day(&trend.unit, trend.interval_95),
         probability(trend.q_value),
     )
 }
@@ -132,8 +139,10 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
         (0, all) => format!("{of}: no drift and no step found among {}.", counted(all, "trend")),
         (some, all) => format!("{of}: {some} of {} found.", counted(all, "trend")),
     };
+    // What is found is never left out.
+    let most = most.max(found.len());
     let mut section = Section::plain(Id::SUMMARY, [Sentence::finding(first)]);
-    section = section.with_all(found.iter().take(most).map(|trend| Sentence::finding(said(trend))));
+    section = section.with_all(found.iter().map(|trend| Sentence::finding(said(trend))));
     if !drift.trends.is_empty() {
         section = section.with(trends(drift.trends.iter().take(most)));
     }
@@ -178,8 +187,8 @@ fn trends<'a>(trends: impl Iterator<Item = &'a JointTrend>) -> Table {
             trend.joint_and_direction(),
             name(trend.metric).to_owned(),
             shown_unit(&trend.unit).to_owned(),
-            shown_change(&trend.unit, trend.slope_per_day),
-            interval(&trend.unit, trend.interval_95),
+            shown_rate(&trend.unit, trend.slope_per_day),
+            interval_a_day(&trend.unit, trend.interval_95),
             probability(q(trend)),
             match (trend.found, trend.is_step) {
                 (true, true) => "step",
@@ -316,7 +325,7 @@ fn verdict(gate: &GateResult, fewest_runs: usize) -> Sentence {
                     shown_change(&worst.unit, worst.growth_per_day()),
                     stepped(worst, step)
                 ),
-                None => format!("{} {unit} a day", shown_change(&worst.unit, worst.slope_per_day)),
+                None => format!("{} {unit} a day", shown_rate(&worst.unit, worst.slope_per_day)),
             };
             let sure = if worst.found { "found" } else { "not proven" };
             let above = worst.growth_per_day() > gate.most_per_day;
@@ -328,10 +337,9 @@ fn verdict(gate: &GateResult, fewest_runs: usize) -> Sentence {
                 worst.joint_and_direction(),
                 probability(q(worst))
             );
-            if gate.broken_by > 1 {
-                format!("{trend}, and at {} more", counted(gate.broken_by - 1, "joint"))
-            } else {
-                trend
+            match gate.also.as_slice() {
+                [] => trend,
+                also => format!("{trend}; also broken by {}", also.join(", ")),
             }
         }
     };

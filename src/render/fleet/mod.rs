@@ -17,6 +17,7 @@ use super::kit::{
 };
 use crate::{
     series::JointKind,
+    units::degrees_from_radians,
     workflow::fleet::{By, Compacted, Intervention, Notes, Progress, Scanned},
 };
 
@@ -147,6 +148,19 @@ fn shown_change(unit: &str, value: f64) -> String {
         _ => deg(value),
     };
     super::kit::signed(value, |_| text.clone())
+}
+
+/// A change a day in its unit, without its name: with two digits at least that say something, however slow it is.
+fn shown_rate(unit: &str, value: f64) -> String {
+    let size = value.abs()
+        * match shown_unit(unit) {
+            "ms" | "mm" => 1e3,
+            _ => degrees_from_radians(1.0),
+        };
+    let usual = if shown_unit(unit) == "ms" { 1 } else { 3 };
+    let decimals = (usual..7).find(|decimals| size >= 10.0_f64.powi(1 - decimals)).unwrap_or(usual);
+    let decimals = usize::try_from(if size > 0.0 { decimals } else { usual }).unwrap_or_default();
+    super::kit::signed(value, |_| format!("{:.decimals$}", size.copysign(value)))
 }
 
 /// The day of an instant.

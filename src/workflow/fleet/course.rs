@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::run::date;
-use crate::math::pieces;
+use super::{run::date, when::within_95};
+use crate::math::{Piece, pieces};
 
 /// Pieces that a line makes by chance more often are one line.
 const NO_LINE: f64 = 0.01;
@@ -16,6 +16,9 @@ pub struct Change {
     pub after: Option<String>,
     /// The first run after it, or the last one of it, UTC.
     pub by: Option<String>,
+    /// Where it jumped, the run before which and the one after which it surely did (95 %), UTC.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within_95: Option<[String; 2]>,
     /// By how much the level changed.
     pub change: f64,
     /// Its 95 % interval, by Student's t.
@@ -47,18 +50,27 @@ pub(super) struct Course {
 pub(super) fn course(levels: &[(f64, f64)]) -> Option<Course> {
     let found = pieces(levels).filter(|found| found.pieces.len() > 1 && found.p_of_line < NO_LINE)?;
     let at = |run: usize| levels[run].0;
-    let (mut changes, mut line) = (Vec::new(), Vec::new());
+    let (mut changes, mut line): (Vec<Change>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
+    let mut before: Option<&Piece> = None;
     for piece in &found.pieces {
         let (from, to) = (piece.points.start, piece.points.end - 1);
         line.extend([[at(from), piece.ends[0]], [at(to), piece.ends[1]]]);
         let change = |[from, to]: [usize; 2], change, interval_95, per_day| {
             let at_days = [at(from), at(to)];
             let [after, by] = at_days.map(date);
-            Change { after, by, change, interval_95, per_day, at_days, runs_before: to }
+            Change { after, by, within_95: None, change, interval_95, per_day, at_days, runs_before: to }
         };
         if let Some((jump, interval)) = piece.jump {
-            changes.push(change([from - 1, from], jump, interval, None));
+            let mut jumped = change([from - 1, from], jump, interval, None);
+            jumped.within_95 = before.and_then(|before| {
+                let [before_at, own_at] = [before, piece].map(|piece| {
+                    move |days: f64| piece.ends[0] + piece.slope * (days - at(piece.points.start))
+                });
+                within_95(levels, before.points.start..piece.points.end, before_at, own_at)
+            });
+            changes.push(jumped);
         }
+        before = Some(piece);
         if piece.slope.abs() > 0.0 {
             // What meets the piece before begins to change there.
             let begins = if piece.jump.is_some() || from == 0 { from } else { from - 1 };

@@ -29,8 +29,10 @@ pub(super) fn without_undated(runs: &mut Vec<Run>, remarks: &mut Remarks) {
 /// Takes the dates of names where those of the stamps cannot be right, and says so; and where they may not be.
 pub(super) fn dates(runs: &mut [Run], remarks: &mut Remarks) {
     let mut doubts: [(u64, String); 2] = Default::default();
+    let slow = slow_clocks(runs);
     for run in runs.iter_mut().filter(|run| run.is_dated()) {
         let Some((named_us, surely)) = named_otherwise(&run.log, run.started_us) else { continue };
+        let surely = surely || slow.contains(&(run.machine.clone(), days_off(run, named_us)));
         let (count, example) = &mut doubts[usize::from(surely)];
         if *count == 0 {
             *example = format!("as {} ({})", name(run), date(days(run)).unwrap_or_default());
@@ -40,7 +42,10 @@ pub(super) fn dates(runs: &mut [Run], remarks: &mut Remarks) {
             run.started_us = named_us;
         }
     }
-    let words = [["a month or more from", "stamps"], ["half a year or more from", "names"]];
+    let words = [
+        ["a month or more from", "stamps"],
+        ["half a year or more, or as many days as those of other runs of the machine, from", "names"],
+    ];
     for ((count, example), [apart, taken]) in doubts.into_iter().zip(words) {
         let message = format!(
             "runs whose stamps are {apart} the dates in their names, {example}: was the clock set? The dates of the {taken} are \
@@ -49,6 +54,26 @@ pub(super) fn dates(runs: &mut [Run], remarks: &mut Remarks) {
         remarks.add(Code::UnusableStamp, count, message);
     }
     runs.sort_by_key(|run| run.started_us);
+}
+
+/// So many runs of a machine whose stamps are as far from their names say that its clock was off.
+const ALIKE: usize = 3;
+
+/// By how many days the name of a run is later than its stamps.
+fn days_off(run: &Run, named_us: i64) -> i64 {
+    const DAY_US: i64 = 86_400_000_000;
+    (named_us - run.started_us + DAY_US / 2).div_euclid(DAY_US)
+}
+
+/// Machines whose clocks were off, and by how many days: a name that is mistyped is off alone.
+fn slow_clocks(runs: &[Run]) -> BTreeSet<(String, i64)> {
+    let mut alike: BTreeMap<(String, i64), usize> = BTreeMap::new();
+    for run in runs.iter().filter(|run| run.is_dated()) {
+        if let Some((named_us, _)) = named_otherwise(&run.log, run.started_us) {
+            *alike.entry((run.machine.clone(), days_off(run, named_us))).or_default() += 1;
+        }
+    }
+    alike.into_iter().filter(|(_, count)| *count >= ALIKE).map(|(key, _)| key).collect()
 }
 
 /// Says which runs were analysed otherwise than most: what differs may be the analysis alone.
@@ -106,6 +131,21 @@ mod tests {
     fn run(machine: &str, k: i64) -> Run {
         let started_us = (20_000 + k) * 86_400_000_000;
         Run { id: k.to_string(), machine: machine.into(), log: format!("/{machine}/{k}.csv"), started_us }
+    }
+
+    #[test]
+    fn a_clock_that_is_off_by_as_much_in_several_runs_is_and_one_name_alone_is_mistyped() {
+        let stamped = |name: &str, day: i64| Run { log: format!("/M/{name}.csv"), ..run("M", day) };
+        // The day 20000 is the 4th of October 2024.
+        let off = ["2024-12-03", "2024-12-05", "2024-12-06"];
+        let mut runs: Vec<Run> =
+            off.into_iter().zip([0, 2, 3]).map(|(name, day)| stamped(name, day)).collect();
+        runs.push(stamped("2024-11-20", 5));
+        let mut remarks = Remarks::default();
+        dates(&mut runs, &mut remarks);
+        let days: Vec<i64> = runs.iter().map(|run| run.started_us / 86_400_000_000 - 20_000).collect();
+        assert_eq!(days, [5, 60, 62, 63]);
+        assert_eq!(remarks.as_slice().iter().map(|remark| remark.count).collect::<Vec<_>>(), [1, 3]);
     }
 
     #[test]

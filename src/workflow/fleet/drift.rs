@@ -38,7 +38,8 @@ pub struct Drift {
     pub machines: usize,
     /// Share of false discoveries among the trends that are found, at most.
     pub false_discovery_rate: f64,
-    /// The trends, one a machine, joint and metric: first those that are found, by how far they stand out from the fleet.
+    /// The trends, one a machine, joint and metric: first those that are found, what grows before what falls, by how far they stand out
+    /// from the fleet.
     pub trends: Vec<JointTrend>,
     /// How the machines did over the days, by metric.
     pub maps: Vec<Map>,
@@ -103,7 +104,10 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
     trends.sort_by(|a, b| {
         let out = |trend: &JointTrend| trend.stands_out.unwrap_or(0.0);
         let by_size = out(b).total_cmp(&out(a));
-        b.found.cmp(&a.found).then(if a.found { by_size } else { a.p_value.total_cmp(&b.p_value) })
+        // What became better is no reason to go to the machine.
+        let worse = |trend: &JointTrend| trend.found && trend.growth_per_day() > 0.0;
+        let first = b.found.cmp(&a.found).then(worse(b).cmp(&worse(a)));
+        first.then(if a.found { by_size } else { a.p_value.total_cmp(&b.p_value) })
     });
     Ok(Drift {
         format: FORMAT.to_owned(),

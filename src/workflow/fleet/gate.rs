@@ -64,6 +64,9 @@ pub struct GateResult {
     pub broken_by: usize,
     /// The fastest growth among the joints that break the limit, else among all; null if there was nothing to judge.
     pub worst: Option<JointTrend>,
+    /// The other joints that break the limit, the fastest first: machine, and joint with its direction.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub also: Vec<String>,
     /// Whether the limit is kept; not if there was nothing to judge, unless that was allowed.
     pub kept: bool,
 }
@@ -107,8 +110,13 @@ fn judged(gate: &Gate, found: &Drift, empty_is_kept: bool) -> GateResult {
     let breaks = |trend: &&JointTrend| trend.found && trend.growth_per_day() > gate.most_per_day;
     let fastest = |a: &&JointTrend, b: &&JointTrend| a.growth_per_day().total_cmp(&b.growth_per_day());
     let (judged, broken_by) = (own().count(), own().filter(breaks).count());
-    let worst = own().filter(breaks).max_by(fastest).or_else(|| own().max_by(fastest));
+    let mut breaking: Vec<&JointTrend> = own().filter(breaks).collect();
+    breaking.sort_by(|a, b| fastest(b, a));
+    let worst = breaking.first().copied().or_else(|| own().max_by(fastest));
+    let also =
+        breaking.iter().skip(1).map(|trend| format!("{} {}", trend.machine, trend.joint_and_direction()));
     GateResult {
+        also: also.collect(),
         metric: gate.metric,
         unit: gate.unit.clone(),
         most_per_day: gate.most_per_day,

@@ -10,7 +10,7 @@ use super::{
     stepped::best_step,
 };
 use crate::math::{
-    begins, column_levels, median, row_weights, step_scatter, theil_sen, trend, weighted_median,
+    begins, column_levels, median, range, row_weights, step_scatter, theil_sen, trend, weighted_median,
 };
 
 /// The starts that enough runs have, as rows by run, with what each row says; and those runs. A start that scatters on
@@ -29,28 +29,70 @@ pub(super) fn matrix(
     let row = |of_runs: &BTreeMap<usize, f64>| {
         runs.iter().map(|run| of_runs.get(run).copied().unwrap_or(f64::NAN)).collect()
     };
-    let mut rows: Vec<Vec<f64>> = often().map(row).collect();
+    let rows: Vec<Vec<f64>> = often().map(row).collect();
     let events = values.iter().filter(|(_, of_runs)| of_runs.len() >= fewest);
     let scatter = |(event, of_runs): (&Event, &BTreeMap<usize, f64>)| {
         let own = step_scatter(of_runs.values().copied());
         let usual = scatters.get(&(joint.to_owned(), event.clone())).copied();
         own.into_iter().chain(usual).reduce(f64::max)
     };
-    let mut scatters: Vec<Option<f64>> = events.map(scatter).collect();
-    if metric == By::Peak {
-        let level = |row: &Vec<f64>| median(row.iter().copied().filter(|value| value.is_finite()).collect());
-        let levels: Vec<f64> = rows.iter().map(level).collect();
+    let scatters: Vec<Option<f64>> = events.map(scatter).collect();
+    let own = Rows { weights: row_weights(&scatters), rows, scatters };
+    let alike = if metric == By::Peak { own.in_proportion(runs.len()) } else { own };
+    (runs, alike.rows, alike.weights)
+}
+
+/// Starts by run, with what each scatters by and says.
+struct Rows {
+    rows: Vec<Vec<f64>>,
+    scatters: Vec<Option<f64>>,
+    weights: Vec<f64>,
+}
+
+/// Levels of starts that change by an amount, not in proportion, differ from run to run by so much less where they are not scaled.
+const NOT_IN_PROPORTION: f64 = 0.9;
+
+impl Rows {
+    /// The rows scaled to the level of the middle one where what changes does so in proportion: a worn valve adds more to the error of a
+    /// fast start, and an offset of a sensor as much to each.
+    fn in_proportion(self, runs: usize) -> Self {
+        let levels = row_levels(&self.rows, &self.weights, runs);
         let middle = median(levels.clone());
-        for ((row, scatter), level) in rows.iter_mut().zip(&mut scatters).zip(levels) {
-            let share = if level > 0.0 { middle / level } else { 1.0 };
-            for value in row.iter_mut() {
-                *value *= share;
-            }
-            *scatter = scatter.map(|scatter| scatter * share);
-        }
+        let share = |level: &f64| if *level > 0.0 { middle / level } else { 1.0 };
+        let shares: Vec<f64> = levels.iter().map(share).collect();
+        let rows = self.rows.iter().zip(&shares);
+        let rows: Vec<Vec<f64>> =
+            rows.map(|(row, share)| row.iter().map(|value| value * share).collect()).collect();
+        let scatters: Vec<Option<f64>> = self
+            .scatters
+            .iter()
+            .zip(&shares)
+            .map(|(scatter, share)| scatter.map(|own| own * share))
+            .collect();
+        let scaled = Self { weights: row_weights(&scatters), rows, scatters };
+        if self.roughness(runs) < NOT_IN_PROPORTION * scaled.roughness(runs) { self } else { scaled }
     }
-    let weights = row_weights(&scatters);
-    (runs, rows, weights)
+
+    /// By how much the levels of runs differ from that of the one before, in all, over the most that two of them do.
+    fn roughness(&self, runs: usize) -> f64 {
+        let levels = column_levels(&self.rows, &self.weights, runs);
+        let levels: Vec<f64> = levels.into_iter().filter(|level| level.is_finite()).collect();
+        let [low, high] = range(levels.iter().copied());
+        levels.windows(2).map(|two| (two[1] - two[0]).abs()).sum::<f64>()
+            / (high - low).max(f64::MIN_POSITIVE)
+    }
+}
+
+/// The level of each row, less what all rows do alike in the runs that it is of; as a factor.
+fn row_levels(rows: &[Vec<f64>], weights: &[f64], runs: usize) -> Vec<f64> {
+    let log = |value: &f64| if *value > 0.0 { value.ln() } else { f64::NAN };
+    let logs: Vec<Vec<f64>> = rows.iter().map(|row| row.iter().map(log).collect()).collect();
+    let common = column_levels(&logs, &vec![1.0; weights.len()], runs);
+    let level = |row: &Vec<f64>| {
+        let own = row.iter().zip(&common).map(|(log, common)| log - common);
+        median(own.filter(|own| own.is_finite()).collect()).exp()
+    };
+    logs.iter().map(level).collect()
 }
 
 /// One metric of one joint.
@@ -120,6 +162,8 @@ impl Leveled {
         let slope = weighted_median(slopes.collect());
         let found = trend(levels).filter(|_| slope.is_finite())?;
         let [low, high] = found.interval;
+        // The levels that are known for fewer days than the starts are tell another slope.
+        let slope = if (low..=high).contains(&slope) { slope } else { found.slope };
         let level = |(at_days, level): &(f64, f64)| {
             let log = self.at_days.iter().position(|at| (at - at_days).abs() <= 0.0);
             let log = log.and_then(|at| self.logs.get(at)).cloned().unwrap_or_default();
@@ -134,7 +178,7 @@ impl Leveled {
             metric: self.metric,
             unit: self.unit.clone(),
             slope_per_day: slope,
-            interval_95: [low.min(slope), high.max(slope)],
+            interval_95: [low, high],
             p_value: found.p,
             q_value: 1.0,
             step: best_step(levels),

@@ -33,6 +33,7 @@ mod sources;
 mod stepped;
 mod store;
 mod tables;
+mod when;
 mod window;
 mod worst;
 

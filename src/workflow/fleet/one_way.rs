@@ -24,12 +24,16 @@ pub(super) fn by_direction(history: &History, axis: &Axis, values: &Values) -> V
     if both.iter().any(|(_, own)| own.is_empty()) { Vec::new() } else { both.into() }
 }
 
-/// A change with its interval: by a step, or a day.
-fn change(trend: &JointTrend, is_step: bool) -> Option<(f64, [f64; 2])> {
-    if is_step {
+/// A change with its interval: the largest of several, or by a step, or from the first run to the last.
+fn change(trend: &JointTrend, jumps: bool) -> Option<(f64, [f64; 2])> {
+    let largest = trend.changes.iter().max_by(|a, b| a.change.abs().total_cmp(&b.change.abs()));
+    if let Some(largest) = largest {
+        return Some((largest.change, largest.interval_95));
+    }
+    if jumps {
         return trend.step.as_ref().map(|step| (step.change, step.interval_95));
     }
-    Some((trend.slope_per_day, trend.interval_95))
+    Some((trend.slope_per_day * trend.days, trend.interval_95.map(|slope| slope * trend.days)))
 }
 
 /// Whether another change is less than half as large, and surely less.
@@ -47,8 +51,9 @@ pub(super) fn clearest(trends: Vec<JointTrend>) -> Vec<JointTrend> {
     let one = |mut group: Vec<JointTrend>| {
         let of = |direction: i8| group.iter().find(|trend| trend.direction == Some(direction));
         let alone = |trend: &JointTrend| {
-            let other = trend.direction.and_then(|direction| change(of(-direction)?, trend.is_step));
-            let own = change(trend, trend.is_step);
+            let jumps = trend.is_step || !trend.changes.is_empty();
+            let other = trend.direction.and_then(|direction| change(of(-direction)?, jumps));
+            let own = change(trend, jumps);
             trend.found && own.zip(other).is_some_and(|(own, other)| changes_alone(own, other))
         };
         let told =

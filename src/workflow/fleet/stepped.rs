@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{course::Change, run::date};
-use crate::math::{line, step, theil_sen};
+use super::{course::Change, run::date, when::within_95};
+use crate::math::{line, mean, step, theil_sen};
 
 /// A level that changes between two runs and stays.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -15,6 +15,9 @@ pub struct LevelStep {
     pub after: Option<String>,
     /// The first run with the new level, UTC.
     pub by: Option<String>,
+    /// The last run that surely lies before it and the first one that surely lies after it (95 %), UTC.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within_95: Option<[String; 2]>,
     /// From the one to the other, days.
     pub days: f64,
     /// Mean level after less mean level before, three runs at least on each side.
@@ -39,6 +42,7 @@ impl LevelStep {
             runs_before: change.runs_before,
             after: change.after.clone(),
             by: change.by.clone(),
+            within_95: change.within_95.clone(),
             days: change.at_days[1] - change.at_days[0],
             change: change.change,
             interval_95: change.interval_95,
@@ -65,10 +69,12 @@ pub(super) fn best_step(levels: &[(f64, f64)]) -> Option<LevelStep> {
     let of_line: f64 = off.iter().map(|off| (off - middle).powi(2)).sum();
     let of_trend = (1..levels.len() - 1).map(|k| bent(levels, k)).fold(of_line, f64::min);
     let (before, after) = (levels.get(found.at.checked_sub(1)?)?.0, levels.get(found.at)?.0);
+    let [low, high] = [&values[..found.at], &values[found.at..]].map(mean);
     Some(LevelStep {
         runs_before: found.at,
         after: date(before),
         by: date(after),
+        within_95: within_95(levels, 0..levels.len(), |_| low, |_| high),
         days: after - before,
         change: found.change,
         interval_95: found.interval,
