@@ -88,6 +88,15 @@ pub(super) fn joined(
     Some((out.into_inner().ok()?, dialect.rewritten(options)))
 }
 
+/// Whether there are several time columns that say different times, each of its own signals.
+pub(super) fn are_several(file: &str, text: &[u8], options: &CsvOptions) -> bool {
+    let of = || {
+        let dialect = detect(file, text, options).ok()?;
+        groups(&read_head(text, dialect, &mut Remarks::default()), dialect, options)
+    };
+    options.time.is_none() && options.rate_hz.is_none() && of().is_some()
+}
+
 /// Every sample of the table, row by row.
 fn samples(text: &[u8], head: &Head, dialect: Dialect, groups: &[Group]) -> Vec<Sample> {
     let mut samples = Vec::new();

@@ -11,8 +11,8 @@ pub(super) struct DateForm {
     /// For a person, such as "dd.mm.yyyy hh:mm:ss".
     pub(super) name: &'static str,
     part: Part,
-    /// Whether what stands behind the seconds counts ms, without zeros before: `10:00:00:5`.
-    pub(super) counts_ms: bool,
+    /// Digits of what stands behind the seconds where that counts ms, us or ns, without zeros before: `10:00:00:5`; else 0.
+    pub(super) counts: usize,
 }
 
 /// The part of an instant that a text gives.
@@ -70,7 +70,7 @@ impl DateForm {
             items: StrftimeItems::new(pattern).collect(),
             name,
             part: *part,
-            counts_ms: false,
+            counts: 0,
         });
         known
             .filter(|form| {
@@ -81,16 +81,19 @@ impl DateForm {
             .collect()
     }
 
-    /// The form that counts ms behind the seconds, where only that makes the cells rise.
+    /// The form that counts ms, us or ns behind the seconds, where only that makes the cells rise.
     fn counting<'a>(self, cells: &(impl Iterator<Item = &'a [u8]> + Clone)) -> Self {
-        let counts = Self { counts_ms: true, ..self.clone() };
         let rises = |form: &Self| {
             let filled = cells.clone().filter(|cell| !cell.trim_ascii().is_empty());
             let mut ns = filled.map(|cell| form.ns(cell));
             let mut before = ns.next().flatten();
             before.is_some() && ns.all(|next| next >= std::mem::replace(&mut before, next))
         };
-        if !rises(&self) && rises(&counts) { counts } else { self }
+        if rises(&self) {
+            return self;
+        }
+        let mut counting = [3, 6, 9].map(|counts| Self { counts, ..self.clone() }).into_iter();
+        counting.find(rises).unwrap_or(self)
     }
 
     pub(super) fn part(&self) -> Part {
@@ -103,7 +106,7 @@ impl DateForm {
         let text = std::str::from_utf8(cell).ok()?.trim();
         let parsed = || {
             let mut parsed = Parsed::new();
-            let plain = if self.counts_ms { padded(&plain(text)?)? } else { plain(text)? };
+            let plain = if self.counts > 0 { padded(&plain(text)?, self.counts)? } else { plain(text)? };
             parse(&mut parsed, &plain, self.items.iter()).ok()?;
             Some(parsed)
         };
@@ -165,14 +168,14 @@ fn plain(text: &str) -> Option<String> {
     Some(plain.strip_suffix(" UTC").map(|time| format!("{time}Z")).unwrap_or(plain))
 }
 
-/// With three digits behind the seconds; `None` if there are more.
-fn padded(plain: &str) -> Option<String> {
+/// With so many digits behind the seconds; `None` if there are more.
+fn padded(plain: &str, most: usize) -> Option<String> {
     let Some(at) = plain.rfind('.').filter(|at| plain[*at..].find(':').is_none()) else {
         return Some(plain.to_owned());
     };
     let (whole, behind) = plain.split_at(at + 1);
     let digits = behind.find(|c: char| !c.is_ascii_digit()).unwrap_or(behind.len());
-    (digits <= 3).then(|| format!("{whole}{:0>3}{}", &behind[..digits], &behind[digits..]))
+    (digits <= most).then(|| format!("{whole}{:0>most$}{}", &behind[..digits], &behind[digits..]))
 }
 
 #[cfg(test)]
@@ -209,12 +212,14 @@ mod tests {
             let cells = || cells.iter().map(|cell| cell.as_bytes());
             let form = DateForm::fitting(&cells()).remove(0);
             let ms = cells().map(|cell| form.ns(cell).unwrap() % 1_000_000_000 / 1_000_000);
-            (form.counts_ms, ms.collect::<Vec<_>>())
+            (form.counts > 0, ms.collect::<Vec<_>>())
         };
         let rising = ["12.03.2024 10:00:00:0", "12.03.2024 10:00:00:5", "12.03.2024 10:00:00:10"];
         assert_eq!(ms(&rising), (true, vec![0, 5, 10]));
         assert_eq!(ms(&["10:00:00.98", "10:00:00.100", "10:00:01"]), (true, vec![98, 100, 0]));
         assert_eq!(ms(&["10:00:00.1", "10:00:00.15", "10:00:00.2"]), (false, vec![100, 150, 200]));
+        let us = ["10:00:00.90000", "10:00:00.100000", "10:00:00.110000"];
+        assert_eq!(ms(&us), (true, vec![90, 100, 110]));
         assert_eq!(ms(&["23:59:59.98", "00:00:00.1"]), (false, vec![980, 100]));
     }
 

@@ -1,13 +1,24 @@
-//! The decimal mark of rows that come one by one: joints that stand in whole numbers show none.
+//! The decimal mark of rows that come one by one: joints that stand in whole numbers show none, and one that always has three digits
+//! behind it may set thousands apart.
 
 use ::csv::ByteRecord;
 
-use super::{CsvOptions, Form, Separator, number::number, rows::Rows};
+use super::{
+    CsvOptions, Form, Separator,
+    number::number,
+    rows::{Rows, cell_text},
+};
+use crate::remark::{Code, Remarks};
 
 /// Whether a decimal mark is still to come.
 #[derive(Debug)]
 pub(super) struct DecimalMark {
     is_open: bool,
+    /// Cells with a mark and three digits behind it, with another number of them, and without a mark of three digits.
+    three: u64,
+    others: u64,
+    whole: u64,
+    first: String,
 }
 
 impl DecimalMark {
@@ -19,7 +30,7 @@ impl DecimalMark {
         while let Some(line) = rows.next(&mut record) {
             is_open &= line < form.head.first_line || marked(form, &record).is_none();
         }
-        Self { is_open }
+        Self { is_open, three: 0, others: 0, whole: 0, first: String::new() }
     }
 
     /// The first cell of a joint that has one settles it for all rows.
@@ -30,7 +41,41 @@ impl DecimalMark {
             self.is_open = false;
         }
     }
+
+    /// Counts how the cells of joints in a row look.
+    pub(super) fn note(&mut self, form: &Form, record: &ByteRecord) {
+        for cell in form.layout.uses.iter().filter_map(|one| record.get(one.column)) {
+            let cell = cell.trim_ascii();
+            match cell.iter().position(|byte| b",.".contains(byte)) {
+                Some(at) if cell.len() == at + 4 => {
+                    if self.three == 0 {
+                        self.first = cell_text(cell);
+                    }
+                    self.three += 1;
+                }
+                Some(_) => self.others += 1,
+                None => {
+                    self.whole += u64::from(cell.iter().filter(|byte| byte.is_ascii_digit()).count() >= 3)
+                }
+            }
+        }
+    }
+
+    /// Marks that always have three digits behind them, beside whole numbers, may set thousands apart.
+    pub(super) fn remark(&self, remarks: &mut Remarks) {
+        if self.others == 0 && self.whole >= DOUBTED && self.three >= DOUBTED {
+            let message = format!(
+                "numbers such as {:?} beside whole ones: if the mark sets thousands apart, what was recorded is a thousand times too \
+                 small; then import a file of the lines with --decimal-comma or --decimal-point",
+                self.first
+            );
+            remarks.add(Code::Guessed, self.three, message);
+        }
+    }
 }
+
+/// Rows by which a mark is doubted.
+const DOUBTED: u64 = 20;
 
 /// The first cell of a joint in a row that has a decimal mark.
 fn marked<'a>(form: &Form, record: &'a ByteRecord) -> Option<&'a [u8]> {

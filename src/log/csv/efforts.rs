@@ -1,5 +1,7 @@
 //! Commands that are no positions: signals to valves are kept as such, others left out.
 
+use std::collections::BTreeSet;
+
 use super::{
     Quantity, Role,
     head::Head,
@@ -71,6 +73,35 @@ pub(super) fn as_signals(
         *remarks = std::mem::take(remarks).without(Code::PlanIsCommand);
         let names: Vec<&str> = layout.joints.iter().map(String::as_str).collect();
         remarks.add(Code::OneSide, names.len() as u64, one_side(&names, labels, "plan", "--planned"));
+    }
+    layout
+}
+
+/// The layout in which commands are the plans of joints that have none where others have one: a report would leave such joints out.
+pub(super) fn as_plans(mut layout: Layout, head: &Head, remarks: &mut Remarks) -> Layout {
+    let joints_of = |role: Role| {
+        let of_role =
+            layout.uses.iter().filter(move |one| one.role == role && one.quantity == Quantity::Position);
+        of_role.map(|one| one.joint).collect::<BTreeSet<usize>>()
+    };
+    let [planned, measured, sent] = [Role::Planned, Role::Measured, Role::Command].map(joints_of);
+    let stands_in: BTreeSet<usize> = &(&sent & &measured) - &planned;
+    if planned.is_empty() || stands_in.is_empty() {
+        return layout;
+    }
+    for one in
+        layout.uses.iter_mut().filter(|one| one.role == Role::Command && stands_in.contains(&one.joint))
+    {
+        one.role = Role::Planned;
+    }
+    let of = |one: &&Use| one.role == Role::Planned && stands_in.contains(&one.joint);
+    if let Some(one) = layout.uses.iter().find(of) {
+        let message = format!(
+            "joints without a plan, where others have one, such as {}: a report holds them against what was sent ({:?}); \
+             --planned JOINT=COLUMN,... names their plans",
+            layout.joints[one.joint], head.names[one.column]
+        );
+        remarks.add(Code::PlanIsCommand, stands_in.len() as u64, message);
     }
     layout
 }

@@ -116,6 +116,12 @@ pub enum CsvError {
          or --slides JOINT=mm of a joint that slides"
     )]
     NoUnit { column: String },
+    /// What only a whole table tells.
+    #[error(
+        "what comes has {had}, which is understood of whole tables only: save the lines in a file, and `hydrotrace import` it; or say \
+         with --time, --planned and --measured which columns count"
+    )]
+    NotByRows { had: &'static str },
     /// The header names fewer columns than the rows have.
     #[error(
         "the header, line {line}, has {names} names and every row has {cells} cells: which of them has no name cannot be \

@@ -7,7 +7,7 @@ use ::csv::ByteRecord;
 use super::{
     CsvOptions,
     dialect::detect,
-    head::read_head,
+    head::{Head, read_head},
     rows::{Rows, cell_text, writer},
 };
 use crate::remark::{Code, Remarks};
@@ -36,35 +36,62 @@ pub(super) fn without_bad<'a>(
     }
 }
 
+/// What tells a bad row.
+#[derive(Debug)]
+pub(super) struct Judge {
+    column: usize,
+    is_opc: bool,
+    header: String,
+}
+
+impl Judge {
+    /// By the first rows of a table; `None` of one without such a column.
+    pub(super) fn of(head: &Head) -> Option<Self> {
+        let judges = |name: &String| JUDGES.contains(&name.trim_matches(['_', ' ']).to_lowercase().as_str());
+        let column = head.names.iter().position(judges)?;
+        let sample = || head.sample.iter().filter_map(|row| row.get(column));
+        let is_opc = head.names[column].to_lowercase().contains("quali")
+            && sample().any(|cell| says(cell, &[OPC_GOOD]))
+            && sample().all(|cell| opc(cell).is_some());
+        let tells = is_opc || sample().any(|cell| says(cell, &GOOD));
+        tells.then(|| Self { column, is_opc, header: head.names[column].clone() })
+    }
+
+    pub(super) fn is_bad(&self, row: &ByteRecord) -> bool {
+        row.get(self.column).is_some_and(|cell| {
+            if self.is_opc { opc(cell).is_some_and(|of| of < OPC_BELOW_IS_BAD) } else { says(cell, &BAD) }
+        })
+    }
+
+    /// Says how many rows were.
+    pub(super) fn remark(&self, bad: u64, remarks: &mut Remarks) {
+        remarks.add(Code::NotFinite, bad, format!("rows that column {:?} calls bad; left out", self.header));
+    }
+}
+
+fn says(cell: &[u8], words: &[&str]) -> bool {
+    words.contains(&cell_text(cell).to_lowercase().as_str())
+}
+
+fn opc(cell: &[u8]) -> Option<u8> {
+    cell_text(cell).parse().ok()
+}
+
 fn kept(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Option<Vec<u8>> {
     let dialect = detect(file, text, options).ok()?;
     let head = read_head(text, dialect, &mut Remarks::default());
-    let judges = |name: &String| JUDGES.contains(&name.trim_matches(['_', ' ']).to_lowercase().as_str());
-    let column = head.names.iter().position(judges)?;
-    let says = |cell: &[u8], words: &[&str]| words.contains(&cell_text(cell).to_lowercase().as_str());
-    let sample = || head.sample.iter().filter_map(|row| row.get(column));
-    let opc = |cell: &[u8]| cell_text(cell).parse::<u8>().ok();
-    let is_opc = head.names[column].to_lowercase().contains("quali")
-        && sample().any(|cell| says(cell, &[OPC_GOOD]))
-        && sample().all(|cell| opc(cell).is_some());
-    if !is_opc && !sample().any(|cell| says(cell, &GOOD)) {
-        return None;
-    }
-    let is_bad = |cell: &[u8]| {
-        if is_opc { opc(cell).is_some_and(|of| of < OPC_BELOW_IS_BAD) } else { says(cell, &BAD) }
-    };
+    let judge = Judge::of(&head)?;
     let (mut kept, mut bad) = (writer(dialect.separator), 0);
     let mut rows = Rows::new(text, dialect.separator);
     let mut record = ByteRecord::new();
     while let Some(line) = rows.next(&mut record) {
-        if line >= head.first_line && record.get(column).is_some_and(is_bad) {
+        if line >= head.first_line && judge.is_bad(&record) {
             bad += 1;
         } else {
             kept.write_byte_record(&record).ok()?;
         }
     }
-    let header = &head.names[column];
-    remarks.add(Code::NotFinite, bad, format!("rows that column {header:?} calls bad; left out"));
+    judge.remark(bad, remarks);
     if bad == 0 { None } else { kept.into_inner().ok() }
 }
 

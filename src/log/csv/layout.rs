@@ -217,7 +217,7 @@ fn drop_repeats(head: &Head, drafts: &mut Vec<Draft>, remarks: &mut Remarks) -> 
 }
 
 /// Key and name of the joints that have plan and measurement; all of one side if the file has no other.
-/// The command stands in for a plan if the file has none.
+/// The command stands in for a plan that a joint has not.
 fn joints(
     head: &Head,
     labels: &[Label],
@@ -236,7 +236,7 @@ fn joints(
     let list = |side: &[&Draft]| side.iter().map(|draft| draft.joint.as_str()).collect::<Vec<_>>().join(", ");
     let pair = |draft: &&Draft| (draft.key.clone(), draft.joint.clone());
     let commanded = planned.is_empty() && !sent.is_empty();
-    let asked = if commanded { sent } else { planned };
+    let asked = if commanded { sent.clone() } else { planned };
     let (all, missing, flag) = match (asked.is_empty(), measured.is_empty()) {
         (true, true) => {
             let odd = labels.iter().zip(&head.names).find_map(|(label, name)| Some((odd(label)?, name)));
@@ -255,7 +255,9 @@ fn joints(
         (false, true) => (&asked, "measurement", "--measured"),
         (false, false) => {
             let both = |draft: &&&Draft| measured.iter().any(|other| other.key == draft.key);
-            let found: Vec<(String, String)> = asked.iter().filter(both).map(pair).collect();
+            let mut found: Vec<(String, String)> = asked.iter().filter(both).map(pair).collect();
+            let planned = |key: &str| asked.iter().any(|draft| draft.key == key);
+            found.extend(sent.iter().filter(both).filter(|draft| !planned(&draft.key)).map(pair));
             if found.is_empty() {
                 return Err(CsvError::NoPair { planned: list(&asked), measured: list(&measured) });
             }

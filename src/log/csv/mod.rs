@@ -35,6 +35,7 @@ mod layout;
 mod lenient;
 mod letter;
 mod levels;
+mod lists;
 mod long;
 mod lvm;
 mod map;
@@ -65,6 +66,7 @@ mod time;
 mod typed;
 mod understood;
 mod unit;
+mod unpadded;
 mod within;
 mod word;
 
@@ -77,7 +79,8 @@ pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
 pub(in crate::log) use printed::is_rule;
 pub use run::CsvRun;
 pub(in crate::log) use run::{
-    GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNDATED_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN,
+    DOUBT_OF_ORIGIN, GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNDATED_OF_ORIGIN, UNIT_OF_ORIGIN,
+    UNUSED_OF_ORIGIN,
 };
 pub use stream::TableStream;
 pub(in crate::log) use text::of_lines;
@@ -180,20 +183,54 @@ fn read_table(
     options: &CsvOptions,
     mut remarks: Remarks,
 ) -> Result<CsvRun, CsvError> {
+    let text = lists::widened(text);
     let text = only::of_one(name, text, options)?;
     let text = judged::without_bad(name, text, options, &mut remarks);
-    let text = behind::without_units(name, text, options);
-    let text = grouping::plain(name, text, options, &mut remarks);
-    let (text, form) = match clocks::joined(name, &text, options, &mut remarks) {
-        Some((joined, form)) => (Cow::Owned(joined), form),
-        None => (text, options.clone()),
-    };
-    let (text, form) = match long::widened(name, &text, &form, &mut remarks) {
-        Some((wide, form)) => (Cow::Owned(wide), form),
-        None => (text, form),
-    };
+    let text = unpadded::padded(name, text, options, &mut remarks);
+    let (text, form, _) = in_one_form(name, text, options, &mut remarks);
     let (run, _) = Form::of(name, &text, &form, &mut remarks)?.read(name, &text, remarks)?;
     Ok(run.given(options.given()))
+}
+
+/// Whether rows can be read one by one; what a caller names is.
+fn by_rows(name: &str, text: &[u8], options: &CsvOptions) -> Result<(), CsvError> {
+    let named = options.time.is_some() && !options.columns.is_empty();
+    let (.., had) = in_one_form(name, Cow::Borrowed(text), options, &mut Remarks::default());
+    had.filter(|_| !named).map_or(Ok(()), |had| Err(CsvError::NotByRows { had }))
+}
+
+const CLOCKS: &str = "times of their own for some columns";
+
+/// The text of a table with one number a cell, one time and all joints a row, how that is read, and what it had that is otherwise.
+fn in_one_form<'a>(
+    name: &str,
+    text: Cow<'a, [u8]>,
+    options: &CsvOptions,
+    remarks: &mut Remarks,
+) -> (Cow<'a, [u8]>, CsvOptions, Option<&'static str>) {
+    let mut had = None;
+    let before = text.len();
+    let text = behind::without_units(name, text, options);
+    let text = grouping::plain(name, text, options, remarks);
+    // Both leave marks and letters out.
+    if text.len() != before {
+        had = Some("units or marks of thousands in its cells");
+    }
+    let (text, form) = match clocks::joined(name, &text, options, remarks) {
+        Some((joined, form)) => {
+            had = Some(CLOCKS);
+            (Cow::Owned(joined), form)
+        }
+        None => {
+            // Few rows may have no time in common yet.
+            had = had.or(clocks::are_several(name, &text, options).then_some(CLOCKS));
+            (text, options.clone())
+        }
+    };
+    match long::widened(name, &text, &form, remarks) {
+        Some((wide, form)) => (Cow::Owned(wide), form, Some("a row for each joint")),
+        None => (text, form, had),
+    }
 }
 
 /// How the rows of a table are read.
@@ -274,6 +311,7 @@ impl Form {
         let stated = |column: usize| given || labels[column].unit.is_some();
         let layout = efforts::as_signals(layout.clone(), head, labels, &cells, stated, &mut remarks);
         let layout = efforts::left_out(layout, head, &cells, stated, &mut remarks);
+        let layout = efforts::as_plans(layout, head, &mut remarks);
         let (units, kinds) = si::to_si(head, labels, &layout, options, &mut cells, &mut remarks)?;
         let layout_added = (&layout, self.added());
         let understood = Understood::new(name, *dialect, head, time, layout_added, &cells, &units);

@@ -32,6 +32,6 @@ pub(super) fn doubt(forms: &[DateForm]) -> Option<String> {
             order_of(other.name).map_or(String::new(), |order| format!(": --time-unit {order} says so"));
         return Some(format!("is read as {}; {} would fit as well{order}", form.name, other.name));
     }
-    let counts = "has whole ms behind the seconds, without zeros before: only so does it rise";
-    form.counts_ms.then(|| counts.to_owned())
+    let unit = ["ms", "us", "ns"].get((form.counts / 3).checked_sub(1)?)?;
+    Some(format!("has whole {unit} behind the seconds, without zeros before: only so does it rise"))
 }

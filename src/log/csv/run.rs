@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, io::Write};
 use super::{Quantity, Role, Understood, layout::Layout, read::Cells};
 use crate::{
     log::{LogWriter, WriteError, WriteOptions, joint_kind},
-    remark::Remarks,
+    remark::{Code, Remarks},
     series::JointKind,
 };
 
@@ -30,6 +30,9 @@ pub(in crate::log) const UNUSED_OF_ORIGIN: &str = "not used";
 pub(in crate::log) const UNIT_OF_ORIGIN: &str = "unit of ";
 /// What its entries of options that were given begin with; a number and the option follow.
 pub(in crate::log) const GIVEN_OF_ORIGIN: &str = "option ";
+
+/// What its entries of doubts begin with that an option settles; a number follows.
+pub(in crate::log) const DOUBT_OF_ORIGIN: &str = "doubt ";
 
 /// A run as a CSV file gave it: SI units, one row an instant.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,6 +117,12 @@ impl CsvRun {
             };
             origin.insert(UNUSED_OF_ORIGIN.to_owned(), unused[..unused.len().min(NAMED)].join(", ") + &more);
         }
+        let doubts = self.remarks.as_slice().iter().filter(|remark| remark.code == Code::Guessed);
+        origin.extend(
+            doubts
+                .enumerate()
+                .map(|(at, doubt)| (format!("{DOUBT_OF_ORIGIN}{at:02}"), doubt.message.clone())),
+        );
         // Numbered, because an option may be given several times, and in the order of the line.
         let given = self.given.iter().enumerate().map(|(at, (option, value))| {
             (format!("{GIVEN_OF_ORIGIN}{at:02} {option}"), value.clone().unwrap_or_default())

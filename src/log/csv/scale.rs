@@ -81,7 +81,11 @@ pub(super) fn unit_named(text: &str) -> Option<Unit> {
 /// The same of a text that is a unit and nothing else, in brackets or below a header: there a letter is one, too.
 pub(super) fn unit_alone(text: &str) -> Option<Unit> {
     const REVOLUTIONS: [&str; 3] = ["U", "tr", "tour"];
-    unit_named(text).or_else(|| REVOLUTIONS.contains(&text.trim()).then_some(REVOLUTION))
+    // TwinCAT puts the quantity behind it: `deg (Angle)`.
+    let alone = text.trim().strip_suffix(')').and_then(|text| text.split_once('('));
+    let alone = alone.filter(|(_, quantity)| quantity.chars().all(|c| c.is_alphabetic() || c == ' '));
+    let text = alone.map_or(text, |(unit, _)| unit).trim();
+    unit_named(text).or_else(|| REVOLUTIONS.contains(&text).then_some(REVOLUTION))
 }
 
 /// The unit that a text in lower case is, if it is words of a scale and a unit.

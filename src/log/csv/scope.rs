@@ -1,12 +1,14 @@
 //! Recordings of a controller's oscilloscope: above the numbers stand rows of properties, in which a key stands before
 //! each signal, or before the signals of a clock, and below it the times of that clock.
 
+use std::collections::BTreeSet;
+
 use super::{
     Separator,
     label::label,
     number::number,
     rows::{cell_text, writer},
-    scale::unit_named,
+    scale::{unit_alone, unit_named},
     unit::Measure,
 };
 use crate::{
@@ -108,7 +110,8 @@ fn names(properties: &[Property<'_>], clocks: &[usize], width: usize, remarks: &
     let said = |one: &&Property<'_>| {
         let all = of(one);
         let count = signals().filter(|at| label(&all[*at], None).is_joint).count();
-        (count > 0 && one.key.eq_ignore_ascii_case("name"), count)
+        let distinct = signals().map(|at| &all[at]).collect::<BTreeSet<_>>().len() == signals().count();
+        (count > 0 && distinct && one.key.eq_ignore_ascii_case("name"), count > 0 && distinct, count)
     };
     let of_signal = |one: &&Property<'_>| !TYPES.iter().any(|key| one.key.eq_ignore_ascii_case(key));
     // The first of those that say as much.
@@ -131,8 +134,10 @@ fn names(properties: &[Property<'_>], clocks: &[usize], width: usize, remarks: &
         remarks.add(Code::Guessed, 1, message);
     }
     if let Some(units) = properties.iter().find(|one| one.key.eq_ignore_ascii_case("unit")).map(of) {
-        for at in signals().filter(|at| unit_named(&units[*at]).is_some()) {
-            names[at] = format!("{} [{}]", names[at], units[at].trim_matches(['(', ')', '[', ']']));
+        for at in signals() {
+            if let Some(unit) = unit_alone(&units[at]) {
+                names[at] = format!("{} [{}]", names[at], unit.name);
+            }
         }
     }
     names
@@ -166,6 +171,19 @@ mod tests {
         let mut remarks = Remarks::default();
         let table = as_table(text.as_bytes(), &mut remarks)?;
         Some((String::from_utf8(table).unwrap(), remarks.as_slice().len()))
+    }
+
+    #[test]
+    fn names_that_are_one_give_way_to_those_that_tell_signals_apart_and_units_may_name_their_quantity() {
+        let text = "Name;SetPos;Name;ActPos;Name;SetPos;Name;ActPos\nUnit;deg (Angle);Unit;deg (Angle);Unit;deg (Angle);Unit;deg (Angle)\n\
+                    SymbolName;Axes.Boom.SetPos;SymbolName;Axes.Boom.ActPos;SymbolName;Axes.Stick.SetPos;SymbolName;Axes.Stick.ActPos\n\
+                    Port;501;Port;501;Port;501;Port;501\n\n0;1;0;1;0;1;0;1\n10;2;10;1;10;2;10;1\n";
+        let (table, _) = of(text).unwrap();
+        let header = table.lines().next().unwrap();
+        assert!(
+            header.contains("Axes.Boom.SetPos [deg]") && header.contains("Axes.Stick.ActPos [deg]"),
+            "{header}"
+        );
     }
 
     #[test]

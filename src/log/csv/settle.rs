@@ -39,6 +39,7 @@ pub(super) fn leave_out_orientation(labels: &mut [Label], named: &BTreeSet<usize
 /// `J1_actual_rad` are of one joint. Names that differ in case alone are of one where no two say the same of it.
 pub(super) fn settle(labels: &mut [Label]) {
     leave_out_gains(labels);
+    leave_out_quaternions(labels);
     states_beside_actions(labels);
     name_by_owners(labels);
     let says = |label: &Label| {
@@ -111,6 +112,23 @@ fn leave_out_gains(labels: &mut [Label]) {
     }
 }
 
+/// `q_des_w` beside `q_des_x`, `q_des_y` and `q_des_z` is of the orientation of a tool.
+fn leave_out_quaternions(labels: &mut [Label]) {
+    let ends = |label: &Label, before: &[String], letter: &str| {
+        label.words.split_last().is_some_and(|(last, rest)| last == letter && rest == before)
+    };
+    let is = |label: &Label| match label.words.split_last() {
+        Some((last, before)) if last == "w" => {
+            PLACE.iter().all(|letter| labels.iter().any(|other| ends(other, before, letter)))
+        }
+        _ => false,
+    };
+    let found: Vec<usize> = (0..labels.len()).filter(|at| is(&labels[*at])).collect();
+    for at in found {
+        (labels[at].is_joint, labels[at].lettered) = (false, None);
+    }
+}
+
 /// Whether another column is the same joint's of the other side: one without a letter beside a plan, or one with.
 fn holds(own: &Lettered, labels: &[Label], at: usize) -> bool {
     let mut others = labels.iter().enumerate().filter(|(index, _)| *index != at).map(|(_, label)| label);
@@ -169,6 +187,13 @@ mod tests {
         );
         assert!(found[3..].iter().all(|(is_joint, ..)| !is_joint), "{found:?}");
         assert_eq!(labels(["set_point", "process_value"]).map(|label| label.key), ["joint", "joint"]);
+    }
+
+    #[test]
+    fn w_beside_x_y_and_z_is_of_an_orientation() {
+        let joints = |headers: [&str; 4]| labels(headers).map(|label| label.is_joint);
+        assert_eq!(joints(["q_des_w", "q_des_x", "q_des_y", "q_des_z"])[0], false);
+        assert_eq!(joints(["q_des_w", "q_act_x", "q_act_y", "q_act_z"])[0], true);
     }
 
     #[test]

@@ -7,8 +7,10 @@ use ::csv::ByteRecord;
 use super::{
     CsvError, CsvOptions, CsvRun, Form, Quantity, Understood,
     again::is_another_header,
+    by_rows,
     decimal_mark::DecimalMark,
     expression,
+    judged::Judge,
     number::number,
     only::{self, Only},
     read::{Cells, Column, Ends},
@@ -53,6 +55,7 @@ pub struct TableStream {
     ends: Ends,
     /// A header with other columns came: what is below it is not read.
     over: bool,
+    judge: Option<Judge>,
     mark: DecimalMark,
 }
 
@@ -65,6 +68,7 @@ struct Counts {
     unstamped: u64,
     bad_cells: u64,
     others: u64,
+    called_bad: u64,
     late: u64,
     set_back: u64,
 }
@@ -84,7 +88,9 @@ impl TableStream {
             Err(CsvError::NoMachine { .. }) => text.clone(),
             one => one?,
         };
+        by_rows(name, &text, options)?;
         let form = Form::of(name, &text, options, &mut remarks)?;
+        let judge = Judge::of(&form.head);
         let (run, units) = form.read(name, &text, remarks)?;
         let run = run.given(options.given());
         let guessed =
@@ -110,6 +116,7 @@ impl TableStream {
             counts: Counts::default(),
             ends: Ends::default(),
             over: false,
+            judge,
             mark,
         })
     }
@@ -211,8 +218,13 @@ impl TableStream {
             self.counts.others += 1;
             return;
         }
+        if self.judge.as_ref().is_some_and(|judge| judge.is_bad(record)) {
+            self.counts.called_bad += 1;
+            return;
+        }
         let cell = |column: usize| record.get(column).unwrap_or_default();
         self.mark.settle(&mut self.form, record);
+        self.mark.note(&self.form, record);
         let dialect = self.form.dialect;
         let Some(ns) =
             self.form.time.ns(self.rows + cells.stamp_ns.len() as u64, cell, dialect.decimal_comma)
@@ -268,7 +280,8 @@ impl TableStream {
     /// Doubts so far.
     pub fn remarks(&self) -> Remarks {
         let mut remarks = self.run.remarks.clone();
-        let Counts { above, cut, ragged, unstamped, bad_cells, others, late, set_back } = self.counts;
+        let Counts { above, cut, ragged, unstamped, bad_cells, others, called_bad, late, set_back } =
+            self.counts;
         let width = self.form.dialect.width;
         if let Some(only) = self.only.as_ref().filter(|_| self.form.options.only.is_none()) {
             remarks.add(
@@ -287,6 +300,10 @@ impl TableStream {
         );
         let message = "rows above the header, whose columns cannot be told; left out";
         remarks.add(Code::UndecodableMessage, above, message);
+        if let Some(judge) = &self.judge {
+            judge.remark(called_bad, &mut remarks);
+        }
+        self.mark.remark(&mut remarks);
         let message = "last row, which breaks off in a number: its sender was stopped there; left out";
         remarks.add(Code::NotClosed, cut, message);
         remarks.add(Code::LengthMismatch, ragged, format!("lines that have not {width} cells; left out"));

@@ -35,7 +35,7 @@ const TIME: &str = "time timestamp timestamps zeit zeitstempel date datum uhrzei
 const FOREIGN: &str = "qdd ddq ddot acc accel acceleration beschleunigung torque tau effort moment drehmoment current strom \
     voltage spannung power leistung temperature temp temperatur pressure druck flow valve ventil spool \
     force kraft mode status error err fehler deviation abweichung lag schleppfehler tcp tool pose cart \
-    cartesian output input digital analog safety runtime counter seq sequence index scaling fraction robot x y z jerk \
+    cartesian euler rpy quat quaternion output input digital analog safety runtime counter seq sequence index scaling fraction robot x y z jerk \
     level gain gains clamp raw temperatures currents torques forces pressures modes voltages following schleppabstand erreur écart errore \
     pression presión pressione 误差 偏差 压力 电流 电压 温度 力矩 扭矩 流量 加速度 誤差 圧力 電流 電圧 流量 오차 압력 ошибка давление";
 

@@ -24,6 +24,14 @@ pub(super) fn table(source: &Source, nested: bool) -> Result<Vec<u8>> {
     let bytes = source.whole()?;
     guarded(move || rows(bytes, nested))
         .unwrap_or_else(|| Err(ParquetError::General("the file is broken".to_owned())))
+        .map_err(|error| match error {
+            // What the library says of a way to compress that is not built in.
+            ParquetError::General(why) if why.contains("Disabled feature") => ParquetError::General(format!(
+                "its columns are compressed in a way that is not read here ({}); write it with zstd, snappy, gzip or lz4",
+                why.rsplit(' ').next().unwrap_or_default()
+            )),
+            error => error,
+        })
 }
 
 /// The library panics on some broken files; `None` then. What other threads have to say of a panic of theirs is
@@ -164,7 +172,28 @@ fn put(field: &Field, unit_ns: Option<i64>, cell: &mut Vec<u8>) -> std::io::Resu
         Field::TimestampMillis(value) => write!(cell, "{}", value.saturating_mul(1_000_000)),
         Field::TimestampMicros(value) => write!(cell, "{}", value.saturating_mul(1_000)),
         Field::Str(text) => write!(cell, "{text}"),
+        Field::Decimal(value) => put_decimal(value.data(), value.scale(), cell),
         _ => Ok(()),
+    }
+}
+
+/// A whole number, its most significant byte first, with so many of its digits behind the point. One of more than 16 bytes is none of a
+/// joint.
+fn put_decimal(bytes: &[u8], scale: i32, cell: &mut Vec<u8>) -> std::io::Result<()> {
+    let (Some(first), Ok(scale @ 0..=38)) =
+        (bytes.first().filter(|_| bytes.len() <= 16), u32::try_from(scale))
+    else {
+        return Ok(());
+    };
+    let fill = if first & 0x80 == 0 { 0 } else { 0xff };
+    let mut whole = [fill; 16];
+    whole[16 - bytes.len()..].copy_from_slice(bytes);
+    let value = i128::from_be_bytes(whole);
+    let (sign, one) = (if value < 0 { "-" } else { "" }, 10_u128.pow(scale));
+    let (above, below) = (value.unsigned_abs() / one, value.unsigned_abs() % one);
+    match scale {
+        0 => write!(cell, "{sign}{above}"),
+        _ => write!(cell, "{sign}{above}.{below:0width$}", width = scale as usize),
     }
 }
 
@@ -191,6 +220,21 @@ mod tests {
     };
 
     use super::*;
+
+    #[test]
+    fn a_decimal_keeps_its_digits() {
+        let of = |bytes: &[u8], scale| {
+            let mut cell = Vec::new();
+            put_decimal(bytes, scale, &mut cell).unwrap();
+            String::from_utf8(cell).unwrap()
+        };
+        assert_eq!(of(&12_345_i32.to_be_bytes(), 3), "12.345");
+        assert_eq!(of(&(-5_i64).to_be_bytes(), 4), "-0.0005");
+        assert_eq!(
+            (of(&[7], 0), of(&[], 2), of(&[1; 17], 2), of(&[1], -1)),
+            ("7".into(), "".into(), "".into(), "".into())
+        );
+    }
 
     #[test]
     fn elements_of_lists_are_columns() {

@@ -16,13 +16,13 @@ use super::{
 use crate::{
     log::{
         channel::{Channel, Definitions},
-        csv::{ORIGIN, joint_in},
+        csv::{DOUBT_OF_ORIGIN, ORIGIN, joint_in},
         file::Held,
         files::{ScannedFile, ScannedLog, count},
         options::{ReadOptions, Selector},
         source::{Role, Rows, Spec, Table, Versioned},
     },
-    remark::Code,
+    remark::{Code, Remarks},
 };
 
 /// More than any of ours, bytes; of one that is larger only the name is read.
@@ -191,9 +191,21 @@ fn describe(file: &ScannedFile<'_>, out: &mut Extracted) {
     }
     for one in &layout.metadata {
         if one.name == ORIGIN && !out.tables.contains(&one.entries) {
+            doubts(&one.entries, &mut out.remarks);
             out.tables.push(one.entries.clone());
         }
         out.metadata.entry(one.name.clone()).or_default().extend(one.entries.clone());
+    }
+}
+
+/// What was guessed when a table was imported holds until it is settled.
+fn doubts(origin: &BTreeMap<String, String>, remarks: &mut Remarks) {
+    let file = origin.get("file").map_or("a table", String::as_str);
+    for (_, doubt) in origin.iter().filter(|(key, _)| key.starts_with(DOUBT_OF_ORIGIN)) {
+        // A table that is read as it is has said so.
+        if remarks.as_slice().iter().all(|remark| remark.message != *doubt) {
+            remarks.add(Code::Guessed, 1, format!("{doubt} (guessed when {file} was imported)"));
+        }
     }
 }
 

@@ -92,6 +92,9 @@ pub enum RecordError {
     /// The lines are not understood.
     #[error(transparent)]
     Csv(#[from] CsvError),
+    /// They are of a whole table.
+    #[error("{0}; `hydrotrace import` of a file with these lines reads them")]
+    ImportReads(CsvError),
     /// The log cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),

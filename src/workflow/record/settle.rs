@@ -2,7 +2,7 @@
 
 use super::{RecordError, Recording};
 use crate::{
-    log::{CsvError, TableStream, is_aside, is_header, other_header},
+    log::{CsvError, TableStream, is_aside, is_header, other_header, read_csv_bytes},
     remark::Code,
 };
 
@@ -70,7 +70,11 @@ impl Recording<'_> {
                 self.first.clear();
                 Ok(())
             }
-            Err(error) => Err(error.into()),
+            Err(error @ (CsvError::NoUnit { .. } | CsvError::NotByRows { .. })) => Err(error.into()),
+            Err(error) => match read_csv_bytes(WHAT_CAME, &self.first, &self.inputs.options) {
+                Ok(_) => Err(RecordError::ImportReads(error)),
+                Err(_) => Err(error.into()),
+            },
         }
     }
 

@@ -183,3 +183,70 @@ fn a_table_that_says_neither_side_is_the_plan_where_a_plan_is_asked_for_or_it_is
     let (code, _, error) = said(&hydrotrace(at, &["report", "run.csv", "a.csv"]));
     assert!(code == 1 && error.contains("found no planned joint angles"), "{error}");
 }
+
+/// What was sent stands in for the plan of each joint that has none, whatever others have.
+#[test]
+fn a_joint_that_has_a_command_alone_is_reported_beside_one_that_has_a_plan() {
+    let rows = |row: &dyn Fn(f64, [f64; 2]) -> String| -> String {
+        (0..500).map(|k| 0.02 * f64::from(k)).map(|t_s| row(t_s, moves(t_s))).collect()
+    };
+    let table = rows(&|t, [p, m]| format!("{t},{p},{m},{p},{m}\n"));
+    let text = format!("t_s,boom_cmd_rad,boom_pos_rad,swing_setpoint_rad,swing_actual_rad\n{table}");
+    let (code, out, error) = import(&text, &[]);
+    assert!(code == 3 && error.is_empty(), "{code}: {error}");
+    assert_eq!(became(&out, "boom_cmd_rad"), "planned position", "{out}");
+    assert!(out.contains("plan-is-command x1") && out.contains("\"boom_cmd_rad\""), "{out}");
+    // Where all have one, a command is one.
+    let both = text.replace("boom_pos_rad,", "boom_pos_rad,boom_plan_rad,");
+    let both = both.lines().enumerate().map(|(k, line)| match k {
+        0 => format!("{line}\n"),
+        _ => {
+            let cells: Vec<&str> = line.split(',').collect();
+            format!("{},{},{},{},{},{}\n", cells[0], cells[1], cells[2], cells[1], cells[3], cells[4])
+        }
+    });
+    let (code, out, _) = import(both.collect::<String>(), &[]);
+    assert!(code == 0 && became(&out, "boom_cmd_rad") == "command position", "{code}: {out}");
+}
+
+/// What a column became.
+fn became(out: &str, column: &str) -> String {
+    let row = out.lines().find(|line| line.split_whitespace().next() == Some(column)).unwrap_or_default();
+    row.split_whitespace().skip(1).take(2).collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn a_list_in_a_cell_is_a_joint_for_each_number() {
+    let row = |k: i32| {
+        let t_s = 0.02 * f64::from(k);
+        let [p, m] = moves(t_s);
+        format!("{t_s},\"['elbow', 'wrist']\",\"({p}, 0.5)\",\"({m}, 0.5)\"\n")
+    };
+    let text = format!(
+        "Time,joint_names,desired.positions,actual.positions\n{}",
+        (0..500).map(row).collect::<String>()
+    );
+    let (code, out, error) = import(&text, &["--radians"]);
+    assert!(code == 0 && error.is_empty(), "{code}: {out}{error}");
+    assert_eq!(became(&out, "elbow.desired.positions"), "planned position", "{out}");
+    assert_eq!(became(&out, "wrist.actual.positions"), "measured position", "{out}");
+}
+
+/// The log that an import writes is doubted as its table is, until an option settles it.
+#[test]
+fn what_an_import_guessed_is_said_of_its_log_too() {
+    let text = trace("t_s,boom_set,boom_act", 1.0, ",", 1.0);
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.csv"), text).unwrap();
+    let run = |args: &[&str]| said(&hydrotrace(folder.path(), args));
+    assert_eq!(run(&["import", "a.csv", "-o", "a.mcap"]).0, 3);
+    let (code, out, _) = run(&["report", "a.mcap"]);
+    assert!(
+        code == 3 && out.contains("taken as rad") && out.contains("when a.csv was imported"),
+        "{code}: {out}"
+    );
+    let (code, out, _) = run(&["report", "a.csv"]);
+    assert!(code == 3 && out.matches("taken as rad").count() == 1, "{code}: {out}");
+    assert_eq!(run(&["import", "a.csv", "--radians", "-o", "a.mcap", "--force"]).0, 0);
+    assert_eq!(run(&["report", "a.mcap"]).0, 0);
+}

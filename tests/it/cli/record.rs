@@ -275,3 +275,48 @@ fn a_guess_is_a_remark_of_a_recording_too_and_a_number_that_is_none_loses_no_lin
     let (code, _, error) = recorded(folder.path(), &text, &["--force", "--part-mb", "0"]);
     assert!(code == 2 && error.contains("--part-mb"), "{error}");
 }
+
+/// `import` sees all rows, and a recording the first ones: what these cannot tell is not guessed.
+#[test]
+fn what_only_a_whole_table_tells_is_not_recorded() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |row: &dyn Fn(f64) -> String| (0..9).map(|k| row(f64::from(k))).collect::<String>();
+    for (had, text) in [
+        (
+            "a row for each joint",
+            format!(
+                "t_s,axis,target_deg,actual_deg\n{}",
+                rows(&|k| format!("{0},boom,{k},{k}\n{0},stick,{k},{k}\n", 0.1 * k))
+            ),
+        ),
+        (
+            "times of their own",
+            format!(
+                "time_ms,boom_set_deg,time_ms,boom_act_deg\n{}",
+                rows(&|k| format!("{},{k},{},{k}\n", 10.0 * k, 10.0 * k + 500.0))
+            ),
+        ),
+        (
+            "units or marks of thousands",
+            format!("t_s;boom_set;boom_act\n{}", rows(&|k| format!("{};{k} deg;{k} deg\n", 0.1 * k))),
+        ),
+    ] {
+        let (code, _, error) = recorded(folder.path(), &text, &[]);
+        assert!(code == 1 && error.contains(had) && error.contains("hydrotrace import"), "{code}: {error}");
+        assert!(!folder.path().join("run.mcap").exists(), "{had}");
+    }
+}
+
+#[test]
+fn rows_that_are_called_bad_are_not_recorded() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = |k: u32| {
+        let (value, said) = if k % 40 == 30 { (999.0, "Bad") } else { (0.01 * f64::from(k), "Good") };
+        format!("{},{value},{value},{said}\n", 0.02 * f64::from(k))
+    };
+    let rows: String = (0..200).map(row).collect();
+    let text = format!("t_s,boom_set_deg,boom_act_deg,quality\n{rows}");
+    let (code, out, error) = recorded(folder.path(), &text, &[]);
+    assert!(code == 3 && out.starts_with("195 rows of 201"), "{code}: {out}{error}");
+    assert!(out.contains("x5") && out.contains("calls bad"), "{out}");
+}

@@ -394,7 +394,7 @@ fn a_layout_of_such_a_log_is_that_of_the_log_made_of_it_by_the_line_that_is_prin
     assert_eq!(line, "hydrotrace import arm.mcap -o run.mcap");
     said(&run_line(folder.path(), line.strip_prefix("hydrotrace ").unwrap()));
     let (code, _, error) = layout("run.mcap");
-    assert_eq!(code, 0, "{error}");
+    assert_eq!(code, 3, "{error}");
     let text = fs::read_to_string(folder.path().join("layout.json")).unwrap();
     assert!(text.contains("/planned/joint_states.position[1]"), "{text}");
 }
