@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     math::median,
-    series::{Noise, Pair, Track, each_local_quadratic, is_sensed, noise, white},
+    series::{Noise, Pair, Track, each_local_quadratic, is_sensed, noise, over_window, white},
 };
 
 /// Fewest samples in the velocity fit to a plan that gives no speeds.
@@ -18,6 +18,10 @@ const PLAN_POINTS: usize = 5;
 
 /// A plan has samples of its own where these are no farther apart, in sample intervals of the measurement.
 const AS_DENSE: f64 = 1.5;
+
+/// Noise of which a fit sees so many times more than white noise would leave is alike from sample to sample; looked for so often.
+const ALIKE: f64 = 1.2;
+const ROUNDS: usize = 2;
 
 /// More deviations than this make their median no better; longer signals are thinned evenly.
 const ENOUGH: usize = 200_000;
@@ -52,14 +56,14 @@ impl<'a> Signals<'a> {
         let sizes = *rules.sizes(pair.kind);
         let noise = noise(t_s, &pair.measured, segments);
         let sample_interval_s = sample_interval_s(pair);
-        let window_s = rules.window_s(pair.kind, sample_interval_s, noise.sigma);
+        let (window_s, sigma) = window(pair, sample_interval_s, &noise, rules);
 
         let column = || vec![0.0; t_s.len()];
         let (mut smooth_rad, mut measured_rad_s, mut deviation_rad_s) = (column(), column(), column());
         let (mut peaks, window) = (Peaks::default(), (window_s, rules.window_points));
         each_local_quadratic(t_s, &pair.measured, segments, window, |segment, i, fit| {
             (smooth_rad[i], measured_rad_s[i]) = (fit.position, fit.velocity);
-            deviation_rad_s[i] = fit.velocity_gain_per_s * noise.sigma;
+            deviation_rad_s[i] = fit.velocity_gain_per_s * sigma;
             peaks.take(t_s, window_s, (segment, i), &fit);
         });
         let given = pair.planned_velocity.as_deref().map(Cow::Borrowed);
@@ -145,6 +149,26 @@ impl<'a> Signals<'a> {
             measured,
         }
     }
+}
+
+/// Half window of the fit to the measured speed, s, and the noise that the fit sees: what it was widened for may look larger yet.
+fn window(pair: &Pair, sample_interval_s: f64, noise: &Noise, rules: &Rules) -> (f64, f64) {
+    let window_s = |sigma: f64| rules.window_s(pair.kind, sample_interval_s, sigma);
+    let mut sigma = noise.sigma;
+    for _ in 0..ROUNDS {
+        let window = (2.0 * window_s(sigma), sample_interval_s);
+        let seen = over_window(&pair.t_s, &pair.measured, &pair.segments, window);
+        // Less than makes a start is no matter: of a joint without noise it is a part of its motion.
+        let half_s = window_s(sigma);
+        let starts = |seen: f64| {
+            let speed = seen * (1.5 * sample_interval_s / half_s.powi(3)).sqrt();
+            rules.start_sigmas * speed > rules.sizes(pair.kind).start_speed
+        };
+        let alike = |seen: &f64| noise.lsb.is_none() && *seen > ALIKE * sigma && starts(*seen);
+        let Some(seen) = seen.filter(alike) else { break };
+        sigma = seen;
+    }
+    (window_s(sigma), sigma)
 }
 
 /// Noise of a plan that gives no speeds, such as a set value that was measured itself, if it makes starts of its own;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::{SIGMA_PER_MAD, mad, median};
+use crate::math::{SIGMA_PER_MAD, dot, mad, median};
 
 /// Noise and step size of one position signal, in its unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -36,6 +36,42 @@ pub fn noise(t_s: &[f64], position: &[f64], segments: &[Range<usize>]) -> Noise 
 pub(crate) fn white(t_s: &[f64], position: &[f64], segments: &[Range<usize>]) -> f64 {
     let curvature = second_differences(t_s, position, segments);
     if curvature.is_empty() { 0.0 } else { SIGMA_PER_MAD * mad(&curvature) / 6.0_f64.sqrt() }
+}
+
+/// Fewest samples of a window, and fewest windows, that tell how noise looks over it.
+const FEWEST: usize = 5;
+const WINDOWS: usize = 50;
+
+/// Noise as a speed that is fitted over `window_s` sees it: the standard deviation of white noise that leaves as much of a cubic in
+/// windows of this length, s, with samples that are usually so far apart, s, of which a smooth motion leaves next to nothing. More than [`white`] where neighbouring samples are
+/// alike, as behind a filter. `None` of too few windows of evenly spaced samples.
+pub(crate) fn over_window(
+    t_s: &[f64],
+    position: &[f64],
+    segments: &[Range<usize>],
+    (window_s, usual_s): (f64, f64),
+) -> Option<f64> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+    let cubic = cubic((window_s / usual_s).clamp(0.0, 1e4).round() as usize + 1)?;
+    let even = |at: usize| {
+        let span_s = t_s[at + cubic.len() - 1] - t_s[at];
+        (span_s / usual_s / (cubic.len() - 1) as f64 - 1.0).abs() <= 0.1
+    };
+    let stride = cubic.len() * (t_s.len() / ENOUGH + 1);
+    let starts =
+        segments.iter().flat_map(|s| (s.start..(s.end + 1).saturating_sub(cubic.len())).step_by(stride));
+    let left: Vec<f64> = starts.filter(|at| even(*at)).map(|at| dot(&cubic, &position[at..])).collect();
+    (left.len() >= WINDOWS).then(|| SIGMA_PER_MAD * mad(&left))
+}
+
+/// The cubic over evenly spaced samples that holds nothing of a parabola, of norm 1; `None` of fewer than five.
+fn cubic(count: usize) -> Option<Vec<f64>> {
+    let at = |k: usize| 2.0 * k as f64 - (count.max(1) - 1) as f64;
+    let [second, fourth] = [2, 4].map(|power| (0..count).map(|k| at(k).powi(power)).sum::<f64>());
+    // What is odd holds nothing of what is even.
+    let odd = (0..count).map(|k| at(k).powi(3) - fourth / second * at(k));
+    let norm = odd.clone().map(|x| x * x).sum::<f64>().sqrt();
+    (count >= FEWEST).then(|| odd.map(|x| x / norm).collect())
 }
 
 /// Whether a signal is one of a sensor: hardly a value repeats the one before, and its second differences change their sign
@@ -113,6 +149,20 @@ mod tests {
         let found = noise(&t_s, &x, std::slice::from_ref(&(0..4000)));
         assert!((found.lsb.unwrap() / 1e-3 - 1.0).abs() < 1e-6, "{found:?}");
         assert!(found.sigma >= 1e-3 / 12.0_f64.sqrt());
+    }
+
+    #[test]
+    fn behind_a_filter_a_window_sees_the_noise_that_went_into_it() {
+        let whole = std::slice::from_ref(&(0..3980));
+        let (t_s, x) = swing(0.0);
+        let (t_s, white_x) = (&t_s[..3980], &x[..3980]);
+        let filtered: Vec<f64> = x.windows(10).take(3980).map(|ten| ten.iter().sum::<f64>() / 10.0).collect();
+        let of = |x: &[f64]| over_window(t_s, x, whole, (0.3, 0.01)).unwrap() / SIGMA_RAD;
+        let [plain, behind] = [of(white_x), of(&filtered)];
+        assert!((plain - 1.0).abs() < 0.15, "{plain}");
+        assert!((0.5..1.1).contains(&behind), "{behind}");
+        assert!(white(t_s, &filtered, whole) < 0.3 * SIGMA_RAD);
+        assert_eq!(over_window(&t_s[..40], &x[..40], &[0..40], (0.3, 0.01)), None);
     }
 
     #[test]

@@ -134,6 +134,9 @@ pub enum SignalError {
     /// A cut lies outside the samples or out of order.
     #[error("cut {cut} is not between the previous one and the {samples} samples")]
     BadCut { cut: usize, samples: usize },
+    /// Too much to be held in samples of equal steps.
+    #[error("{span_s} s are longer than a run can be, {most_s} s: is a stamp wrong?")]
+    TooLong { span_s: f64, most_s: f64 },
 }
 
 /// Instants that were checked, for signals that share them: finite, strictly increasing, at least one.

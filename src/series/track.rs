@@ -97,6 +97,16 @@ impl Track {
         Ok(Self { kind, signal: Signal::on(instants, name, kind.quantity(), position)?, velocity: None })
     }
 
+    /// The same samples at other instants, as many.
+    ///
+    /// # Errors
+    ///
+    /// [`SignalError::LengthMismatch`].
+    pub(crate) fn at_instants(self, instants: &Instants) -> Result<Self, SignalError> {
+        let made = Self::on(instants, self.kind, self.name(), self.position().to_vec())?;
+        Ok(Self { velocity: self.velocity, ..made })
+    }
+
     /// Adds the velocity that the source gives, in the joint's unit per second.
     ///
     /// # Errors

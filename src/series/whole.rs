@@ -247,6 +247,17 @@ fn parts_s(series: &Series) -> Vec<[f64; 2]> {
     parts
 }
 
+/// When a joint last moves before a motion and first after it, s, in the part of the log that holds it.
+pub(crate) fn moves_beside_s(series: &Series, [from_s, to_s]: [f64; 2]) -> [Option<f64>; 2] {
+    const ASIDE_S: f64 = 0.1;
+    let holds = |part: &[f64; 2]| part[0] <= to_s && part[1] >= from_s;
+    let Some([begin_s, end_s]) = parts_s(series).into_iter().find(holds) else { return [None; 2] };
+    [
+        moving_within_s(series, [begin_s, from_s - ASIDE_S]).map(|[_, last_s]| last_s),
+        moving_within_s(series, [to_s + ASIDE_S, end_s]).map(|[first_s, _]| first_s),
+    ]
+}
+
 fn moving_within_s(series: &Series, [begin_s, end_s]: [f64; 2]) -> Option<[f64; 2]> {
     let mut found: Option<[f64; 2]> = None;
     for track in &series.tracks {

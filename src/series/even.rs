@@ -1,0 +1,96 @@
+//! Rows that were made at even steps and stamped when they arrived: a plan that is smooth from row to row, and rough by its stamps,
+//! says so. A command made from it as stamped would shake its machine.
+
+use super::{Track, signal::Instants};
+use crate::math::line;
+
+/// Fewest rows of a stretch that tell.
+const FEWEST: usize = 50;
+/// Stamps that are off by less, root mean square, s, do no harm.
+const LEAST_OFF_S: f64 = 0.000_5;
+/// Mean over so many rows, and by how many steps it may be off: rows that were lost, or a clock that goes otherwise, are no jitter.
+const MEAN_OF: usize = 25;
+const MOST_STEPS: f64 = 2.0;
+/// Second differences by rows are at most this share of those by stamps, as squares.
+const SMOOTHER: f64 = 0.25;
+
+/// When rows were made, where their stamps are late by chance, and by how much these are off, root mean square, s. `None` where the plans
+/// of these rows, which share their instants, do not say so.
+pub(crate) fn even_instants(plans: &[&Track]) -> Option<(Instants, f64)> {
+    let first = plans.first()?;
+    let (mut t_s, mut squares, mut rows) = (first.t_s().to_vec(), 0.0, 0.0);
+    for segment in first.segments() {
+        let stamped = &first.t_s()[segment.clone()];
+        let positions: Vec<&[f64]> = plans.iter().map(|plan| &plan.position()[segment.clone()]).collect();
+        if let Some(even) = even(stamped, &positions) {
+            squares += even.iter().zip(stamped).map(|(even, t)| (even - t).powi(2)).sum::<f64>();
+            rows += stamped.len() as f64;
+            t_s[segment.clone()].copy_from_slice(&even);
+        }
+    }
+    let cuts: Vec<usize> = first.segments().iter().skip(1).map(|segment| segment.start).collect();
+    let instants = Instants::new(t_s, &cuts).ok().filter(|_| rows > 0.0)?;
+    Some((instants, (squares / rows).sqrt()))
+}
+
+fn even(stamped: &[f64], plans: &[&[f64]]) -> Option<Vec<f64>> {
+    if stamped.len() < FEWEST {
+        return None;
+    }
+    let index: Vec<f64> = (0..stamped.len()).map(|k| k as f64).collect();
+    let found = line(&index, stamped);
+    let off_s = (found.left.iter().map(|off| off * off).sum::<f64>() / index.len() as f64).sqrt();
+    let wanders =
+        |window: &[f64]| (window.iter().sum::<f64>() / MEAN_OF as f64).abs() > MOST_STEPS * found.slope;
+    if off_s < LEAST_OFF_S || found.left.windows(MEAN_OF).any(wanders) {
+        return None;
+    }
+    let (mut by_row, mut by_stamp) = (0.0, 0.0);
+    for plan in plans {
+        for (q, t) in plan.windows(3).zip(stamped.windows(3)) {
+            let [before, after] = [q[1] - q[0], q[2] - q[1]];
+            by_row += (after - before).powi(2);
+            let slopes = after / (t[2] - t[1]) - before / (t[1] - t[0]);
+            by_stamp += (2.0 * slopes / (t[2] - t[0]) * found.slope * found.slope).powi(2);
+        }
+    }
+    (by_row < SMOOTHER * by_stamp)
+        .then(|| stamped.iter().zip(&found.left).map(|(t, left)| t - left).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plan in rows of 10 ms, stamped late by `late`.
+    fn track(late: impl Fn(u32) -> f64, is_held: bool) -> Track {
+        let at = |k: u32| if is_held { k / 10 * 10 } else { k };
+        let plan = |k: u32| 0.3 * (0.02 * f64::from(at(k))).sin();
+        let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k) + late(k)).collect();
+        Track::new("boom", t_s, (0..800).map(plan).collect(), &[]).unwrap()
+    }
+
+    #[test]
+    fn rows_that_arrive_late_by_chance_were_made_evenly() {
+        let late = |k: u32| 0.003 * f64::from(k.wrapping_mul(2_654_435_761) >> 16 & 0xff) / 255.0;
+        let late_track = track(late, false);
+        let (even, off_s) = even_instants(&[&late_track]).unwrap();
+        let on_time = late_track.clone().at_instants(&even).unwrap();
+        let step = |k: usize| on_time.t_s()[k + 1] - on_time.t_s()[k];
+        assert!((0..799).all(|k| (step(k) - 0.01).abs() < 1e-5), "{:?}", &on_time.t_s()[..5]);
+        assert!((0.000_5..0.001_2).contains(&off_s), "{off_s}");
+    }
+
+    #[test]
+    fn rows_that_were_sampled_unevenly_lost_or_held_are_as_they_are_stamped() {
+        let uneven: Vec<f64> =
+            (0..800).map(|k| 0.01 * f64::from(k) + 0.004 * f64::from(k * 7 % 5) / 4.0).collect();
+        let sampled = uneven.iter().map(|t| 0.3 * (2.0 * t).sin()).collect();
+        assert!(even_instants(&[&Track::new("boom", uneven, sampled, &[]).unwrap()]).is_none());
+        let lost = |k: u32| 0.05 * f64::from(k / 100);
+        assert!(even_instants(&[&track(lost, false)]).is_none());
+        let late = |k: u32| 0.003 * f64::from(k * 7 % 5) / 4.0;
+        assert!(even_instants(&[&track(late, true)]).is_none());
+        assert!(even_instants(&[&track(|_| 0.0, false)]).is_none());
+    }
+}
