@@ -29,6 +29,15 @@ pub struct PlanEvaluation {
 }
 
 impl PlanEvaluation {
+    /// The same curve in so many times the time; `None` where the task does not have it.
+    pub(crate) fn paced(&self, setup: &Setup, by: f64) -> Option<Self> {
+        let first_s = self.times_s.first().copied()?;
+        let at = |t_s: f64| first_s + by * (t_s - first_s);
+        let times_s: Vec<f64> = self.times_s.iter().map(|t_s| at(*t_s)).collect();
+        let via: Vec<Via> = self.via.iter().map(|via| Via { t_s: at(via.t_s), ..via.clone() }).collect();
+        Self::through(setup, &times_s, &via).ok()
+    }
+
     /// Judges arrivals at the key points, s.
     ///
     /// # Errors

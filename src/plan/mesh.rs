@@ -5,7 +5,7 @@ use multiversion::multiversion;
 use super::Setup;
 use crate::{
     arm::{Chain, Cylinder, LANES, Load, Motion as ArmMotion, Workspace, inverse_dynamics},
-    spline::{Gauss, Motion, Quantity, Samples, Spline},
+    spline::{Degree, Gauss, Motion, Quantity, Samples, Spline},
 };
 
 /// Rows of one joint that come from the mechanics: shares of torque, rod speed and rod force.
@@ -215,7 +215,9 @@ fn parts(spline: &Spline) -> usize {
     let points = spline.points();
     let steps = (1..points.len()).flat_map(|k| points.of(k - 1).iter().zip(points.of(k)));
     let farthest_rad = steps.fold(0.0, |most: f64, (a, b)| most.max((b - a).abs()));
-    (1..MOST_PARTS).find(|parts| farthest_rad <= *parts as f64 * PART_RAD).unwrap_or(MOST_PARTS)
+    // Eight nodes are exact for a degree of 15, and the square of the power of a curve of degree seven is far beyond.
+    let each = if spline.degree() == Degree::Septic { 2 } else { 1 };
+    each * (1..MOST_PARTS).find(|parts| farthest_rad <= *parts as f64 * PART_RAD).unwrap_or(MOST_PARTS)
 }
 
 /// What one segment is judged by.

@@ -85,8 +85,8 @@ pub(super) struct ShapeArgs {
     #[arg(long, value_name = "WHAT", default_value = "timing")]
     pub(super) shape: Free,
 
-    /// Pieces that an interval between key points is split into, with --shape free [default: as many as make 25
-    /// altogether, 2 to 5]; 30 give a percent or two more in six times the time
+    /// Pieces that an interval between key points is split into, with --shape free [default: 20 of one interval,
+    /// 10 of two, 8 of three, else as many as make 25 altogether, 2 to 5]; 30 give a percent or two more in six times the time
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=i64::from(MOST_PIECES)))]
     pub(super) pieces: Option<u32>,
 }

@@ -43,8 +43,9 @@ pub enum NoShape {
 /// Pieces of an interval at most.
 pub const MOST_PIECES: u32 = 30;
 /// Pieces that a motion is split into by default, and how many that is of an interval at least and most; at least two where a
-/// motion has many.
+/// motion has many. One of few intervals is worth more: 5 leave one interval 8 to 15 % slower than 20.
 const PIECES: usize = 25;
+const OF_FEW: [usize; 4] = [20, 20, 10, 8];
 const FEWEST: [usize; 2] = [2, 4];
 const DEFAULT_MOST: usize = 5;
 /// Pieces of a motion at most, by default and of a caller who says how many: the time of a step grows with their cube.
@@ -190,14 +191,11 @@ fn sought_from(
 ) -> Result<Shape, NoShape> {
     let intervals = setup.interval_count();
     let most = MOST[usize::from(pieces.is_some())];
-    let pieces = pieces
-        .unwrap_or(
-            (PIECES / intervals.max(1))
-                .clamp(FEWEST[1], DEFAULT_MOST)
-                .min(most / intervals.max(1))
-                .max(FEWEST[0]),
-        )
-        .clamp(1, MOST_PIECES as usize);
+    let room = most / intervals.max(1);
+    let usual = (PIECES / intervals.max(1)).clamp(FEWEST[1], DEFAULT_MOST).min(room).max(FEWEST[0]);
+    let usual = OF_FEW.get(intervals).copied().unwrap_or(usual);
+    // More than a descent takes are as many as it does.
+    let pieces = pieces.unwrap_or(usual).min(room.max(FEWEST[0])).clamp(1, MOST_PIECES as usize);
     if intervals * pieces > most {
         return Err(NoShape::TooManyIntervals { found: intervals, most: most / pieces });
     }
@@ -232,6 +230,7 @@ fn sought_from(
         let load = load(setup, &frame, &curve)?;
         let again = load > KEPT_SHARE && tried < TRIES;
         match kept(setup, &frame, &curve) {
+            Ok(evaluation) if aim.pace == Pace::Fastest => found = Some(quickened(setup, evaluation)),
             Ok(evaluation) => found = Some(evaluation),
             Err(error) if !again && found.is_none() => return Err(error),
             Err(_) => {}
@@ -326,6 +325,29 @@ fn kept(setup: &Setup, frame: &Frame<'_>, curve: &Curve) -> Result<PlanEvaluatio
         frame.clamp(&mut interval_s);
     }
     Err(NoShape::NoGain)
+}
+
+/// Halvings of what a plan that touches no limit may be quickened by, and the distance to a limit that is worth them.
+const HALVINGS: usize = 12;
+const WORTH: f64 = 1e-4;
+
+/// The plan, as much faster as its limits allow all of it.
+fn quickened(setup: &Setup, plan: PlanEvaluation) -> PlanEvaluation {
+    let timed = plan.margins.iter().filter(|margin| margin.limit != Limit::Position);
+    let least = timed.map(factor).fold(0.0, f64::max);
+    if !(0.1..1.0 - WORTH).contains(&least) {
+        return plan;
+    }
+    let scaled = |by: f64| plan.paced(setup, by).filter(|plan| plan.broken().is_empty());
+    let (mut best, mut range) = (None, [least, 1.0]);
+    for _ in 0..HALVINGS {
+        let by = 0.5 * (range[0] + range[1]);
+        match scaled(by) {
+            Some(faster) => (best, range[1]) = (Some(faster), by),
+            None => range[0] = by,
+        }
+    }
+    best.unwrap_or(plan)
 }
 
 /// How much slower a plan is at the limit that it breaks: enough for rates, of torques and forces only a beginning.

@@ -139,9 +139,10 @@ fn shape(planned: &Planned) -> Option<String> {
     };
     let change = |k: &Objective| {
         let (was, is) = (timing.objectives[*k], planned.chosen.objectives[*k]);
-        format!("{} {:+.1} %", k.row().short, 100.0 * (is / was - 1.0))
+        // An arm without masses takes no power.
+        (was > 0.0).then(|| format!("{} {:+.1} %", k.row().short, 100.0 * (is / was - 1.0)))
     };
-    let changes: Vec<String> = Objective::OF_PLAN.iter().map(change).collect();
+    let changes: Vec<String> = Objective::OF_PLAN.iter().filter_map(change).collect();
     Some(format!(
         "Its shape is free, {pieces} pieces an interval; against the best times alone: {}.",
         changes.join(", ")

@@ -171,7 +171,15 @@ pub fn run(
     let smoothest = |held: &Ceilings| {
         let task = Task { ceilings: *held, ..task.clone() };
         let by = (&*found.front, (Rule::Best(Objective::RmsJerk), None));
-        Some(chosen(setup, &task, options.shape, by).ok()?.1.plan)
+        // A free shape that was found can be slower, whatever a descent from other times comes to.
+        let slower = || {
+            let by = held[Objective::Duration] / own.plan.objectives[Objective::Duration];
+            let plan = own.plan.paced(setup, by).filter(|_| own.shaped.is_some() && by >= 1.0)?;
+            (plan.broken().is_empty() && plan.objectives.within(held)).then_some(plan)
+        };
+        let found = chosen(setup, &task, options.shape, by).ok().map(|found| found.1.plan);
+        let jerk = |plan: &PlanEvaluation| plan.objectives[Objective::RmsJerk];
+        found.into_iter().chain(slower()).min_by(|a, b| jerk(a).total_cmp(&jerk(b)))
     };
     let took_s = |plan: &PlanEvaluation| plan.objectives[Objective::Duration];
     let near = options.near_s.map(|near_s| near(&task.ceilings, near_s, smoothest, took_s));

@@ -65,7 +65,7 @@ fn a_crane_with_a_telescope_is_planned_run_and_better_for_its_next_command() {
     assert_eq!(code, 0, "{plan}");
     for part in [
         "boom speed",
-        "350.0 mm/s     350.0 mm/s",
+        " mm/s     350.0 mm/s",
         " mm/s3 ",
         "In the RMS jerk of all joints 1 m counts as 1 rad",
         "All limits are kept.",
