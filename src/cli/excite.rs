@@ -71,9 +71,10 @@ impl Args {
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         spare_for_log(Some(&self.output), self.task.as_slice())?;
-        let excited = run(&self.request())?;
+        let request = self.request();
+        let excited = run(&request)?;
         write_file(&self.output, &excited.log(RATE_HZ)?)?;
-        console.show(&words::document(&excited, &self.output))?;
+        console.show(&words::document(&excited, request.arm == Arm::Sample, &self.output))?;
         Ok(Outcome::Clean)
     }
 }

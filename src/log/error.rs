@@ -127,6 +127,15 @@ pub enum LogError {
         files[0], files[1]
     )]
     ToldTwice { topic: String, files: [String; 2], shared_s: f64 },
+    /// Files that are said to be one run, and cannot be.
+    #[error(
+        "{} and {} are {:.1} hours apart in {topic}: they are not of one run; give the files of one run, `hydrotrace compare` two runs, \
+         or put the plan of one into the other with `hydrotrace join`",
+        files[0],
+        files[1],
+        apart_s / 3600.0
+    )]
+    Apart { topic: String, files: [String; 2], apart_s: f64 },
     /// One field given as plan and as measurement.
     #[error("{field} is given as plan and as measurement; their difference would be nothing")]
     SameField { field: String },

@@ -23,7 +23,7 @@ const FAST: [(JointKind, f64, &str); 2] =
 const BEYOND: [(JointKind, f64); 2] = [(Turns, 5.0 * DEGREE_RAD), (Slides, 0.05)];
 
 /// An identification run, for people.
-pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
+pub(crate) fn document(excited: &Excited, of_sample: bool, file: &Path) -> Document {
     let has = |kind: JointKind| excited.joints.iter().any(|joint| joint.kind == kind);
     let number = |kind: JointKind, si: f64| format!("{:.1}", on_paper(kind, si));
     let with = |dimension: Dimension, kind: JointKind, si: f64| {
@@ -54,8 +54,9 @@ pub(crate) fn document(excited: &Excited, file: &Path) -> Document {
         row
     });
     let title = format!(
-        "Identification run of {}, {:.0} s, in {}",
+        "Identification run of {}{}, {:.0} s, in {}",
         counted(excited.joints.len(), "joint"),
+        if of_sample { " of the sample arm (--task or --joint name yours)" } else { "" },
         excited.duration_s(),
         file.display()
     );

@@ -14,6 +14,9 @@ pub(crate) fn document(joined: &Joined, plan: &Path, output: &Path) -> Document 
     let Joined { sent, sent_is_command, located, at_s, duration_s, joints, messages, files, remarks, .. } =
         joined;
     let plan = plan.display();
+    if joined.keeps_plan {
+        return with_its_plan(joined, &plan.to_string(), output);
+    }
     let what = if *sent_is_command { "command" } else { "plan" };
     let sent = match (sent, located) {
         (Some(topic), Some(found)) => format!(
@@ -42,6 +45,33 @@ pub(crate) fn document(joined: &Joined, plan: &Path, output: &Path) -> Document 
     }
     let written =
         format!("{messages} messages of the run and the plan of {plan} written to {}.", output.display());
+    let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)]).with(Block::Facts(facts));
+    Document::default().with(next::report(section, &[output])).remarked(remarks)
+}
+
+/// Of a log that had the plan.
+fn with_its_plan(joined: &Joined, plan: &str, output: &Path) -> Document {
+    let Joined { at_s, duration_s, joints, messages, files, remarks, .. } = joined;
+    let mut facts = vec![
+        fact(
+            "plan",
+            format!(
+                "{duration_s:.2} s of {} as the log has it, from {at_s:.3} s on",
+                counted(*joints, "joint")
+            ),
+        ),
+        fact(
+            "sent",
+            format!("the command of {plan}, which was sent as it stands if the log does not say otherwise"),
+        ),
+    ];
+    if !files.is_empty() {
+        facts.push(fact("files", files.join(", ")));
+    }
+    let written = format!(
+        "{messages} messages of the run, which holds its plan, and the command of {plan} written to {}.",
+        output.display()
+    );
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)]).with(Block::Facts(facts));
     Document::default().with(next::report(section, &[output])).remarked(remarks)
 }

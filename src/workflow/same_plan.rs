@@ -152,7 +152,7 @@ pub(super) fn within(series: &Series, plan: &Series, most_rad: f64) -> bool {
 
 /// A stretch of a series every [`STEP_S`](crate::fit::STEP_S), its times counted from its start; beyond its ends joints rest.
 pub(super) fn cut(series: &Series, from_s: f64, to_s: f64) -> Result<Series, SignalError> {
-    let t_s = grid(to_s - from_s);
+    let t_s = checked_grid(to_s - from_s)?;
     let one = |track: &Track| {
         let states: Vec<_> = t_s.iter().map(|t| track.held_at(t + from_s)).collect();
         let position = states.iter().map(|state| state.position).collect();
@@ -167,7 +167,7 @@ pub(super) fn cut(series: &Series, from_s: f64, to_s: f64) -> Result<Series, Sig
 
 /// The same where there are samples: what was not measured stays so. Joints of which nothing is left are left out.
 pub(super) fn cut_measured(series: &Series, from_s: f64, to_s: f64) -> Result<Series, SignalError> {
-    let t_s = grid(to_s - from_s);
+    let t_s = checked_grid(to_s - from_s)?;
     let one = |track: &Track| {
         let (mut kept_s, mut position, mut cuts) = (Vec::new(), Vec::new(), Vec::new());
         for t in &t_s {
@@ -181,6 +181,16 @@ pub(super) fn cut_measured(series: &Series, from_s: f64, to_s: f64) -> Result<Se
         (!kept_s.is_empty()).then(|| Track::of(track.kind(), track.name(), kept_s, position, &cuts))
     };
     Ok(Series { tracks: series.tracks.iter().filter_map(one).collect::<Result<_, _>>()? })
+}
+
+/// No motion takes longer, s.
+const MOST_S: f64 = 86_400.0;
+
+fn checked_grid(span_s: f64) -> Result<Vec<f64>, SignalError> {
+    if span_s > MOST_S {
+        return Err(SignalError::TooLong { span_s, most_s: MOST_S });
+    }
+    Ok(grid(span_s))
 }
 
 /// A duration that is the difference of two instants is off by their rounding, and no step the longer for it.

@@ -12,12 +12,15 @@ use crate::{
 /// Parts that meet may share this much: recorders split between threads.
 const SHARED_S: f64 = 1.0;
 
+/// Parts of one run are no farther apart, s.
+const MOST_APART_S: f64 = 3600.0;
+
 /// When the recorder received the first message of a file, ns; `u64::MAX` if it has no message.
 pub(super) fn begins_ns(layout: &Layout) -> u64 {
     layout.blocks.iter().map(|block| block.begins_ns).find(|ns| *ns > 0).unwrap_or(u64::MAX)
 }
 
-/// Rejects two files with samples of one joint in one topic for the same time: the caller must say
+/// Rejects two files with samples of one joint in one topic for the same time, or far apart: the caller must say
 /// which of them is the run.
 pub(super) fn check<'a>(
     extracted: &Extracted,
@@ -32,19 +35,25 @@ pub(super) fn check<'a>(
         let (Content::Table(table), Some(field)) = (&source.content, candidate.field) else { continue };
         let stamp_ns = table.stamps.of(base);
         let parts = parts(source, table, stamp_ns);
+        let name = |part: &Part| extracted.files.get(part.file).map(|file| file.name.clone());
+        let files = |a: &Part, b: &Part| [a, b].map(|part| name(part).unwrap_or_default());
+        let topic = || extracted.topics[source.topic].topic.clone();
         for (k, a) in parts.iter().enumerate() {
             for b in &parts[k + 1..] {
                 let from_ns = a.span_ns[0].max(b.span_ns[0]);
                 let shared_s = seconds_since(from_ns, a.span_ns[1].min(b.span_ns[1]));
                 let shortest_s = a.length_s().min(b.length_s());
                 if shared_s > SHARED_S.min(shortest_s / 2.0) && tell_alike(table, field, a, b) {
-                    let name = |part: &Part| extracted.files.get(part.file).map(|file| file.name.clone());
-                    return Err(LogError::ToldTwice {
-                        topic: extracted.topics[source.topic].topic.clone(),
-                        files: [name(a).unwrap_or_default(), name(b).unwrap_or_default()],
-                        shared_s,
-                    });
+                    return Err(LogError::ToldTwice { topic: topic(), files: files(a, b), shared_s });
                 }
+            }
+        }
+        let mut in_time: Vec<&Part> = parts.iter().collect();
+        in_time.sort_by_key(|part| part.span_ns);
+        for two in in_time.windows(2) {
+            let apart_s = seconds_since(two[0].span_ns[1], two[1].span_ns[0]);
+            if apart_s > MOST_APART_S {
+                return Err(LogError::Apart { topic: topic(), files: files(two[0], two[1]), apart_s });
             }
         }
     }

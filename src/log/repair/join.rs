@@ -37,6 +37,8 @@ pub struct Addition<'a> {
     pub log_delay_ns: i64,
     /// Topics and fields of what was sent, joined by a comma, if the log has them.
     pub sent: Option<[&'a str; 2]>,
+    /// Whether the log has this plan on our topic, and keeps it.
+    pub keeps_plan: bool,
     /// Files, in place of those of their names.
     pub files: &'a [Attachment],
     /// Names and entries of metadata, in place of those of these names.
@@ -49,14 +51,14 @@ impl ScannedLog<'_> {
     ///
     /// # Errors
     ///
-    /// [`LogError`] if a file has a plan on our topic, or `output` cannot be written.
+    /// [`LogError`] if a file has another plan on our topic, or `output` cannot be written.
     pub fn join(&self, addition: &Addition<'_>, output: &Path) -> Result<u64, LogError> {
         let mut parts = Vec::with_capacity(self.files.len());
         let topics = Topics::default();
         let mut commands = true;
         for file in &self.files {
             let copier = Copier::of(file);
-            if copier.has(&topics.planned) {
+            if copier.has(&topics.planned) && !addition.keeps_plan {
                 return Err(LogError::Planned { path: file.path.to_owned(), topic: topics.planned });
             }
             commands &= !copier.has(&topics.command);
@@ -65,7 +67,9 @@ impl ScannedLog<'_> {
         let written = write_atomically::<_, CopyError>(output, |file| {
             let options = Options { log_delay_ns: addition.log_delay_ns, ..Options::default() };
             let log = LogWriter::new(file, &addition.joints, options)?;
-            Joining { log, waiting: addition.samples.iter().peekable(), commands }.write(parts, addition)
+            let plans = !addition.keeps_plan;
+            Joining { log, waiting: addition.samples.iter().peekable(), plans, commands }
+                .write(parts, addition)
         });
         written.map_err(|error| error.of(output))
     }
@@ -74,6 +78,7 @@ impl ScannedLog<'_> {
 struct Joining<'a, W: Write> {
     log: LogWriter<W>,
     waiting: Peekable<Iter<'a, PlanSample>>,
+    plans: bool,
     commands: bool,
 }
 
@@ -119,7 +124,9 @@ impl<W: Write> Joining<'_, W> {
     fn catch_up(&mut self, until_ns: i64) -> Result<(), WriteError> {
         while let Some(sample) = self.waiting.next_if(|sample| sample.stamp_ns <= until_ns) {
             let [angle_rad, speed_rad_s] = &sample.planned;
-            self.log.joint_sample(Role::Planned, sample.stamp_ns, angle_rad, speed_rad_s, &[])?;
+            if self.plans {
+                self.log.joint_sample(Role::Planned, sample.stamp_ns, angle_rad, speed_rad_s, &[])?;
+            }
             if self.commands {
                 let [angle_rad, speed_rad_s] = &sample.command;
                 self.log.joint_sample(Role::Command, sample.stamp_ns, angle_rad, speed_rad_s, &[])?;

@@ -11,6 +11,7 @@ use crate::{
         metric::{Units, number, position},
     },
     replay::Dimension,
+    text::shell_word,
     workflow::fit::{Fitted, torque::JointTorque},
 };
 
@@ -192,12 +193,18 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
     } else if !open.is_empty() {
         lines.push(format!("The logs do not identify: {}.", open.join("; ")));
         let why = if fitted.runs.iter().any(|run| run.identifies) {
-            "The strokes of the identification run were not faster than these joints, which kept up with them."
+            "The strokes of the identification run were not faster than these joints, which kept up with them.".to_owned()
         } else {
-            "Smooth runs hardly reach the limits of speed. `hydrotrace excite` writes a run that does, with strokes \
-             faster than the machine; it also narrows the interval of the dead band. Fit it together with these logs."
+            let joints =
+                fit.joints.iter().map(|joint| format!(" --joint {}=HOME:LOW:HIGH", shell_word(&joint.name)));
+            format!(
+                "Smooth runs hardly reach the limits of speed. `hydrotrace excite -o id.mcap{}`, or with the --task of the arm, writes a run \
+                 that does, with strokes faster than the machine; it also narrows the interval of the dead band. Fit it together with \
+                 these logs.",
+                joints.collect::<String>()
+            )
         };
-        lines.extend(open.iter().any(|open| open.starts_with("speed")).then(|| why.into()));
+        lines.extend(open.iter().any(|open| open.starts_with("speed")).then_some(why));
     }
     let of = |which: &dyn Fn(&JointFit) -> bool| {
         let joints: Vec<&str> =

@@ -155,7 +155,10 @@ pub(super) fn levers(replanned: &Replanned) -> Vec<Fact> {
         &ours.planned
     };
     let send = format!("{samples}, or {trajectory} as a trajectory; compare the run with {}", ours.planned);
-    vec![fact("plan", plan), fact("command", command), fact("send", send)]
+    let clock = replanned.moves_after_s().map_or(String::new(), |after_s| {
+        format!("; it counts from 0, and its plan first moves at {after_s:.2} s")
+    });
+    vec![fact("plan", plan), fact("command", command), fact("send", send + &clock)]
 }
 
 fn held_row(held: &HeldTo, units: Units) -> Vec<String> {

@@ -214,6 +214,7 @@ pub(super) fn doubts(logs: &[String], observed: &[&Recording]) -> Remarks {
         // A machine is fitted to what was sent, whatever was planned.
         let mut own = observed.remarks.clone().without(Code::PlanIsCommand);
         doubt_leads(observed, &mut own);
+        doubt_unsent(observed, &mut own);
         for remark in own.as_slice() {
             let message = &remark.message;
             let message = if logs.len() > 1 { format!("{log}: {message}") } else { message.clone() };
@@ -221,6 +222,21 @@ pub(super) fn doubts(logs: &[String], observed: &[&Recording]) -> Remarks {
         }
     }
     remarks
+}
+
+/// Joints whose command the log lacks while it has that of others.
+fn doubt_unsent(observed: &Recording, remarks: &mut Remarks) {
+    let Some(command) = &observed.command else { return };
+    let unsent = observed.measured.tracks.iter().filter(|track| command.series.track(track.name()).is_none());
+    let unsent: Vec<&str> = unsent.map(Track::name).collect();
+    if !unsent.is_empty() {
+        let message = format!(
+            "joints whose command is not in the log, where others have one: {}; nothing is learnt of them, and nothing corrected, until \
+             it is logged (or named with --command)",
+            unsent.join(", ")
+        );
+        remarks.add(Code::UnpairedJoint, unsent.len() as u64, message);
+    }
 }
 
 /// Every log must share a joint with those before it: a machine is fitted, not several.

@@ -9,7 +9,7 @@ use crate::{
     fit::Observation,
     log::{Input, LogError, LogFiles, ReadOptions, Recording, SignalRole},
     remark::Code,
-    series::seen,
+    series::{Track, even_instants, seen},
 };
 
 /// Why a run cannot be fitted.
@@ -42,6 +42,7 @@ pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, Obse
     let read = read.clone().wanting(&SIGNALS);
     let recording = LogFiles::with(inputs, &read).and_then(|files| files.scan()?.read(&read));
     let mut recording = recording.map_err(|source| ObserveFailure { path, source })?;
+    on_even_instants(&mut recording);
     let Recording { planned, measured, remarks, .. } = &mut recording;
     for track in &mut measured.tracks {
         let Some(own) = planned.track(track.name()).and_then(|plan| seen(plan, track)) else { continue };
@@ -53,6 +54,28 @@ pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, Obse
         *track = own;
     }
     Ok(recording)
+}
+
+/// Brings rows that were stamped late by chance onto the instants at which they were made, as their plan tells.
+fn on_even_instants(recording: &mut Recording) {
+    let Recording { planned, measured, command, remarks, .. } = recording;
+    let Some(stamped) = planned.tracks.first().map(|track| track.t_s().to_vec()) else { return };
+    let plans: Vec<&Track> = planned.tracks.iter().filter(|track| track.t_s() == stamped).collect();
+    let Some((instants, off_s)) = even_instants(&plans) else { return };
+    let sent = command.iter_mut().flat_map(|command| &mut command.series.tracks);
+    let all = planned.tracks.iter_mut().chain(&mut measured.tracks).chain(sent);
+    let mut count = 0;
+    for track in all.filter(|track| track.t_s() == stamped) {
+        if let Ok(made) = track.clone().at_instants(&instants) {
+            (*track, count) = (made, count + 1);
+        }
+    }
+    let message = format!(
+        "signals whose rows are stamped by chance up to some ms late ({:.1} ms, root mean square), as their plan tells, which is smooth from \
+         row to row: taken at even steps",
+        1e3 * off_s
+    );
+    remarks.add(Code::UnusableStamp, count, message);
 }
 
 /// The same for a fit: the command if the log has one, else the plan.

@@ -23,6 +23,9 @@ pub struct Joined {
     pub sent: Option<String>,
     /// Whether the command was sent, and not the plan itself.
     pub sent_is_command: bool,
+    /// Whether the log had this plan, so that what was sent is the command of the plan's file.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub keeps_plan: bool,
     /// When the first sample of the plan was sent, s.
     pub at_s: f64,
     /// Root mean square difference between what was sent and what was made, rad, of joints that slide m; null if the caller
@@ -64,6 +67,7 @@ mod tests {
             program: PROGRAM.to_owned(),
             sent: Some("/sent:positions".into()),
             sent_is_command: true,
+            keeps_plan: false,
             at_s: 1.5,
             rms_difference_rad: Some(0.001),
             other_places: Some(1),

@@ -16,7 +16,7 @@ use super::carried::{
 };
 use crate::{
     document::PROGRAM,
-    log::{Addition, LogError, LogFiles, PlanSample, ReadOptions, Sides, TimeBase},
+    log::{Addition, LogError, LogFiles, PlanSample, ReadOptions, Sides, SignalRole, TimeBase, Topics},
     remark::Code,
     series::{Series, Track},
     units::{DEGREE_RAD, nanoseconds},
@@ -136,10 +136,12 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     let log = files.scan()?;
     // The measurement is enough if the caller says when the plan began.
     let sides = if inputs.at_s.is_some() { Sides::MeasurementAtLeast } else { Sides::Both };
-    let run = log.read(&ReadOptions { sides, ..inputs.read.clone() }).map_err(|error| match error {
-        LogError::Missing { missing: "planned", .. } => JoinFailure::NothingSent(error),
-        other => other.into(),
-    })?;
+    let run = log
+        .read(&ReadOptions { sides, ..inputs.read.clone() }.wanting(&[SignalRole::Command]))
+        .map_err(|error| match error {
+            LogError::Missing { missing: "planned", .. } => JoinFailure::NothingSent(error),
+            other => other.into(),
+        })?;
     // A run that was read without a plan has none.
     let sent = (!run.planned.tracks.is_empty()).then_some(&run.planned);
     let topic = format!("{}:{}", run.source.planned_topic, run.source.planned_field);
@@ -152,6 +154,15 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     };
     let commanded = found.map_or(plan.command.is_some(), |(commanded, _)| commanded);
     let located = found.map(|(_, located)| located);
+    // A table of set value and angle tells the plan, and what was sent for it is in its file.
+    let is_plan = !commanded && !run.plan_is_command && run.source.planned_topic == Topics::default().planned;
+    let keeps_plan = is_plan && plan.command.is_some() && located.is_some_and(|found| place::is_same(&found));
+    if keeps_plan {
+        remarks = remarks.without(Code::SentOtherwise);
+        if let Some(command) = &run.command {
+            plan.check_command(&command.series, &inputs.plan, &command.topic)?;
+        }
+    }
     // The run's time at which the plan's own is 0.
     let zero_s = located.map_or_else(|| inputs.at_s.unwrap_or(0.0) - from_s, |located| located.at_s);
     let (start_s, end_s) = (zero_s + from_s, zero_s + to_s);
@@ -170,7 +181,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     let otherwise = located.is_some_and(|found| !place::is_same(&found));
     let command = match (commanded, &plan.command, sent) {
         (_, _, Some(sent)) if otherwise => (sent, 0.0),
-        (true, Some(command), _) => (command, zero_s),
+        (_, Some(command), _) if commanded || keeps_plan => (command, zero_s),
         _ => (&plan.planned, zero_s),
     };
     let names: Vec<&str> = plan.planned.tracks.iter().map(Track::name).collect();
@@ -192,7 +203,10 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         joints: names.clone(),
         samples,
         log_delay_ns: received.flatten().map_or(0, |[middle_s, _]| nanoseconds(middle_s)),
-        sent: sent.map(|_| [run.source.planned_topic.as_str(), run.source.planned_field.as_str()]),
+        keeps_plan,
+        sent: sent
+            .filter(|_| !keeps_plan)
+            .map(|_| [run.source.planned_topic.as_str(), run.source.planned_field.as_str()]),
         files: carried.files(),
         metadata: carried.metadata(),
     };
@@ -202,6 +216,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         program: PROGRAM.to_owned(),
         sent: located.map(|_| topic),
         sent_is_command: commanded,
+        keeps_plan,
         at_s: start_s,
         rms_difference_rad: located.map(|found| found.rms_rad),
         other_places: located.map(|found| found.others),

@@ -79,6 +79,25 @@ impl Plan {
     }
 }
 
+impl Plan {
+    /// Whether what was sent beside the plan is the command that was made for it.
+    pub(super) fn check_command(&self, sent: &Series, path: &Path, topic: &str) -> Result<(), JoinFailure> {
+        let Some(found) = self.command.as_ref().and_then(|command| locate(command, sent)) else {
+            return Ok(());
+        };
+        if share(&found) <= FITS {
+            return Ok(());
+        }
+        let at_s = found.at_s + self.span_s()[0];
+        Err(JoinFailure::SentOtherwise {
+            plan: path.to_owned(),
+            topic: topic.to_owned(),
+            at_s,
+            share: share(&found),
+        })
+    }
+}
+
 /// Why what was sent may not be what the plan's file holds.
 fn doubt(found: &Located, path: &Path, topic: &str) -> Option<String> {
     let plan = path.display();

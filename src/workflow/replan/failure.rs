@@ -90,6 +90,14 @@ pub enum ReplanFailure {
          once; leave the last log out, or, if its plan is meant, {log}"
     )]
     BreaksOff { log: String, after_s: f64 },
+    /// A log that ends or begins in a rest of a plan that goes on in another.
+    #[error(
+        "{log} {} in a rest of the plan of {other}, which {}: the command would be of a part of the task; leave {log} out, or, if that part \
+         is meant, {other}",
+        if *ends { "ends" } else { "begins" },
+        if *ends { "moves on after it" } else { "moves before it" }
+    )]
+    InRest { log: String, other: String, ends: bool },
     /// A plan that no joint can follow, whatever is sent.
     #[error(
         "{}: the plan of {joint} steps by {size} at {at_s:.2} s: no joint follows a step, and a correction would only \

@@ -10,7 +10,7 @@ use crate::{
     log::Recording,
     math::quantile,
     replay::{Rules, replay},
-    series::{JointKind, Series, Track, align, bridged, moving_s},
+    series::{JointKind, Series, Track, align, bridged, moves_beside_s, moving_s},
     workflow::{
         carried::{Carried, Promise, rest::PLAN_LEAD_S},
         same_plan::{
@@ -101,6 +101,7 @@ impl History {
         let end_s = plan.span_s().map_or(0.0, |[_, end_s]| end_s);
         let rest_s = moving_s(plan).map_or(0.0, |[_, moving_to_s]| end_s - moving_to_s);
         let mut after_s = AFTER_S;
+        let mut held: Vec<Held> = Vec::new();
         for (place, (log, recording)) in names.iter().zip(recordings).enumerate() {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
             let Some(starts_s) = found_at_s(plan, &*bridged(&recording.planned)?, from_s - PLAN_LEAD_S)?
@@ -111,6 +112,7 @@ impl History {
                 history.others.extend((!Carried::identifies(recording)).then(|| log.clone()));
                 continue;
             };
+            held.extend(Held::of(log, &recording.planned, plan, starts_s));
             let rests_s = rests_s(&recording.planned, plan, starts_s + end_s);
             let seen = recording.measured.tracks.iter().filter_map(|track| track.t_s().last());
             let seen_s = seen.map(|t_s| t_s - starts_s - end_s).fold(f64::INFINITY, f64::min);
@@ -129,6 +131,10 @@ impl History {
                 let moved = |of_rows, series| if of_rows { onto(&series, &own, plan) } else { Ok(series) };
                 (sent, measured) = (moved(of_sent, sent)?, moved(of_measured, measured)?);
             }
+            // What was sent to a joint that has no command is not known: nothing is learnt of it, and nothing corrected.
+            let unsent = plan.tracks.iter().filter(|track| sent.track(track.name()).is_none());
+            let unsent: Vec<Track> = unsent.cloned().collect();
+            sent.tracks.extend(unsent);
             let pairs: Vec<_> = (recording.measured.tracks.iter())
                 .filter_map(|track| align(recording.planned.track(track.name())?, track))
                 .collect();
@@ -148,6 +154,9 @@ impl History {
             history.corrections_rad.push(farthest(&sent, plan));
             history.series.push((sent, measured));
             history.places.push(place);
+        }
+        if let Some((newest, others)) = held.split_last() {
+            others.iter().try_for_each(|other| newest.check(other))?;
         }
         // Only what all logs have can be compared.
         for (run, (_, measured)) in history.runs.iter_mut().zip(&mut history.series) {
@@ -246,6 +255,33 @@ fn rests_s(planned: &Series, plan: &Series, ended_s: f64) -> f64 {
     };
     let steps = (0_u32..).map(|k| STEP_S * f64::from(k));
     steps.take_while(|after_s| *after_s <= AFTER_S && holds(after_s)).last().unwrap_or(0.0)
+}
+
+/// What a log holds of its plan beside the motion that it shares with others, s from the start of that.
+struct Held {
+    log: String,
+    span_s: [f64; 2],
+    /// Motion before and after it.
+    moves_s: [Option<f64>; 2],
+}
+
+impl Held {
+    fn of(log: &str, planned: &Series, plan: &Series, starts_s: f64) -> Option<Self> {
+        let motion_s = moving_s(plan)?.map(|at_s| starts_s + at_s);
+        let span_s = planned.span_s()?.map(|at_s| at_s - starts_s);
+        let moves_s = moves_beside_s(planned, motion_s).map(|at_s| Some(at_s? - starts_s));
+        Some(Self { log: log.to_owned(), span_s, moves_s })
+    }
+
+    /// Whether it has ended, or had not begun, when the plan of another log moves on: whether its own would have nobody knows.
+    fn check(&self, other: &Self) -> Result<(), ReplanFailure> {
+        let [before_s, after_s] = other.moves_s;
+        let ends = after_s.is_some_and(|at_s| self.span_s[1] < at_s);
+        if ends || before_s.is_some_and(|at_s| self.span_s[0] > at_s) {
+            return Err(ReplanFailure::InRest { log: self.log.clone(), other: other.log.clone(), ends });
+        }
+        Ok(())
+    }
 }
 
 /// Root mean square over all joints of what a plan and what was measured of it differ by, and what that of every joint is below for

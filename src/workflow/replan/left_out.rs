@@ -22,6 +22,8 @@ const STANDS: f64 = 0.03;
 const ANSWERS: f64 = 0.5;
 /// What is sent later than its plan by more was held back, s: corrections run ahead.
 const BEHIND_S: f64 = 0.5;
+/// Joints that lead their plan by more were sent their command early, s: no correction asks for that.
+const EARLY_S: f64 = 0.25;
 /// Plans whose motions differ by less, as a share, may be one.
 const ALIKE: f64 = 0.05;
 /// Plans that move less are not judged, rad: root mean square about the mean.
@@ -39,6 +41,7 @@ pub(super) fn without_useless(
     let mut left = stopped(&observed);
     twice(&observed, &names, &mut left);
     held_back(&observed, &mut left);
+    early(&observed, &mut left);
     let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
     let dead = dead(&stay.iter().map(|k| &observed[*k]).collect::<Vec<_>>());
     left.extend(dead.into_iter().map(|(place, why)| (stay[place], why)));
@@ -94,6 +97,30 @@ fn held_back(observed: &[Recording], left: &mut LeftOut) {
             )
         }));
     }
+}
+
+/// Runs in which joints led their plan by far, where there are others: what was sent came too early.
+fn early(observed: &[Recording], left: &mut LeftOut) {
+    let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
+    let early: Vec<(usize, f64)> = stay.iter().filter_map(|k| Some((*k, led_by_s(&observed[*k])?))).collect();
+    if early.len() < stay.len() {
+        left.extend(early.into_iter().map(|(k, by_s)| {
+            let why = format!(
+                "its joints led their plan by {by_s:.1} s in the mean of its motion: what was sent came before its time"
+            );
+            (k, (Code::Paused, why))
+        }));
+    }
+}
+
+/// By how much measured joints led their plan, s, if something else was sent and came early.
+fn led_by_s(run: &Recording) -> Option<f64> {
+    let [from_s, to_s] = run.planned.span_s()?;
+    let of = |series: &Series| cut(&*bridged(series).ok()?, from_s, to_s).ok();
+    let plan = of(&run.planned)?;
+    let sent_s = ahead_s(&of(&run.command.as_ref()?.series)?, &plan);
+    let by_s = ahead_s(&of(&run.measured)?, &plan);
+    (by_s > EARLY_S && sent_s > by_s).then_some(by_s)
 }
 
 /// How much later than its plan a command was sent, s, if it was held back.

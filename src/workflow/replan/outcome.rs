@@ -14,7 +14,7 @@ use crate::{
     plan::{PlanEvaluation, Timing},
     remark::{Code, Remarks},
     replay::{Rules, replay},
-    series::{Series, align},
+    series::{Series, align, moving_s},
     task::{Ceilings, Objective, Objectives},
     workflow::{
         carried::{
@@ -223,8 +223,9 @@ pub(super) fn replanned(
         }
         for joint in command.joints.iter().filter(|joint| joint.stalled_rad > 0.0) {
             let message = format!(
-                "{} more of a correction gained nothing on {}: a limit that no file tells holds it, such as its valve or a pump that \
-                 joints share; the smaller correction is as good there, and more time is what helps",
+                "{} more of a correction gained nothing on {}, or spoilt it: a limit that no file tells may hold it, such as its valve or a \
+                 pump that joints share, and more time is what helps then; the smaller correction is as good there. Or what was sent came \
+                 at another time than that of its plan",
                 joint.kind.says(joint.stalled_rad),
                 joint.name
             );
@@ -272,6 +273,11 @@ pub(super) fn replanned(
 }
 
 impl Replanned {
+    /// How long after its first sample the plan first moves, s: what is sent counts on a clock of its own.
+    pub fn moves_after_s(&self) -> Option<f64> {
+        Some(moving_s(&self.plan)?[0] - self.plan.span_s()?[0])
+    }
+
     /// What is expected of the next run.
     pub fn promise(&self) -> Promise {
         Promise {

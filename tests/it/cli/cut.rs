@@ -1,6 +1,6 @@
 //! What was cut, and what is not alike: nothing is learnt from what nobody measured, and no number is of two units.
 
-use std::fs;
+use std::{fs, path::Path};
 
 use serde_json::Value;
 
@@ -185,4 +185,59 @@ fn no_command_is_made_across_a_hole_in_the_plan_and_limits_hide_no_doubt() {
         let (code, text, _) = said(&run_line(folder.path(), line));
         assert!(code == 3 && text.contains("nothing is computed across them"), "{line}: {code}");
     }
+}
+
+/// A folder in which a run and the next command lie, and one of two days, is no recording in parts.
+#[test]
+fn files_of_one_folder_that_are_hours_apart_are_no_one_run() {
+    let folder = scratch();
+    let folder = folder.path();
+    let table = |name: &str, from: &str| {
+        let row = |k: u32| format!("{from}:{:06.3},{},{}\n", 0.02 * f64::from(k), k % 7, k % 7);
+        let rows: String = (0..500).map(row).collect();
+        let text = format!("time,boom_set_deg,boom_act_deg\n{rows}");
+        fs::write(folder.join("a.csv"), text).unwrap();
+        let (code, out, error) = said(&run_line(folder, &format!("import a.csv -o runs/{name}.mcap")));
+        assert!(code == 0 || code == 3, "{out}{error}");
+    };
+    fs::create_dir(folder.join("runs")).unwrap();
+    table("one", "2026-05-04 10:00");
+    table("two", "2026-05-04 10:01");
+    let (code, out, error) = said(&run_line(folder, "report runs"));
+    assert!(code == 0 || code == 3, "{out}{error}");
+    table("three", "2026-05-05 10:01");
+    for line in ["report runs", "fit runs", "replan runs --keep-plan -o next.mcap"] {
+        let (code, _, error) = said(&run_line(folder, line));
+        assert!(
+            code == 1 && error.contains("24.0 hours apart") && error.contains("three.mcap"),
+            "{line}: {error}"
+        );
+    }
+}
+
+/// A table whose plan, in motion until 4.5 s and from 7 s to 9.5 s, was recorded to an instant.
+fn in_two(folder: &Path, name: &str, span_s: [f64; 2]) {
+    let ramp = |t_s: f64| 0.5 - 0.5 * (std::f64::consts::PI * (t_s / 2.5).clamp(0.0, 1.0)).cos();
+    let plan = |t_s: f64| 10.0 * ramp(t_s - 2.0) + 8.0 * ramp(t_s - 7.0);
+    let rows = (0..1400).map(|k| 0.01 * f64::from(k)).filter(|t_s| (span_s[0]..span_s[1]).contains(t_s));
+    let rows = rows.map(|t_s| format!("{t_s:.2},{:.4},{:.4}\n", plan(t_s), plan(t_s - 0.1)));
+    let text = format!("t_s,boom_set_deg,boom_act_deg\n{}", rows.collect::<String>());
+    fs::write(folder.join(name), text).unwrap();
+}
+
+#[test]
+fn a_log_that_ends_or_begins_in_a_rest_of_a_plan_that_goes_on_is_no_run_of_it() {
+    let folder = scratch();
+    let folder = folder.path();
+    in_two(folder, "a.csv", [0.0, 14.0]);
+    for (span_s, says) in [([0.0, 6.5], "moves on after it"), ([5.5, 14.0], "moves before it")] {
+        in_two(folder, "b.csv", span_s);
+        let (code, _, error) = said(&run_line(folder, "replan a.csv b.csv --keep-plan -o next.mcap"));
+        assert!(code == 1 && error.contains("b.csv") && error.contains(says), "{code}: {error}");
+        assert!(!folder.join("next.mcap").exists());
+    }
+    // One that rests where the other moves on has another plan.
+    in_two(folder, "b.csv", [0.0, 14.0]);
+    let (code, out, error) = said(&run_line(folder, "replan a.csv b.csv --keep-plan -o next.mcap"));
+    assert!(code == 0 || code == 3, "{code}: {out}{error}");
 }

@@ -257,7 +257,8 @@ fn what_was_not_sent_is_refused_with_how_far_it_is_off() {
     let next = format!("--plan {}", RUNS.path().join("next.mcap").display());
     let said = refused(at, &format!("join other.mcap {next}"));
     assert!(said.contains("% of the motion") && said.contains("--planned"), "{said}");
-    let said = refused(at, &format!("join {} {next}", RUNS.path().join("whole.mcap").display()));
+    let own = format!("--plan {}", RUNS.path().join("plan.mcap").display());
+    let said = refused(at, &format!("join {} {own}", RUNS.path().join("run.mcap").display()));
     assert!(said.contains("/planned/joint_states already"), "{said}");
     let said = refused(at, &format!("join other.mcap {next} --at 500"));
     assert!(said.contains("outside the measurement"), "{said}");
@@ -355,4 +356,32 @@ fn a_recorder_whose_clock_runs_apart_is_told_by_what_was_sent() {
         assert_eq!(joined.status.code(), Some(if says.is_some() { 3 } else { 0 }), "{text}");
         assert!(says.is_none_or(|says| text.contains(says)), "{text}");
     }
+}
+
+/// A PLC's table of set value and angle holds the plan, and not what was sent for it.
+#[test]
+fn a_log_that_holds_its_plan_gets_the_command_that_was_sent_and_its_promise() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for name in ["next.mcap", "whole.mcap", "run.mcap"] {
+        std::fs::copy(RUNS.path().join(name), folder.join(name)).unwrap();
+    }
+    let table = done(folder, "export whole.mcap --csv");
+    let header: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let kept = |at: &usize| !header[*at].contains("command");
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        (0..header.len()).filter(kept).map(|at| cells[at]).collect::<Vec<_>>().join(",") + "\n"
+    };
+    std::fs::write(folder.join("plc.csv"), table.lines().map(row).collect::<String>()).unwrap();
+    let said = done(folder, "join plc.csv --plan next.mcap -o after.mcap");
+    assert!(said.contains("which holds its plan, and the command of next.mcap written"), "{said}");
+    let report = json(folder, "report after.mcap");
+    let whole = json(folder, "report whole.mcap");
+    for ((name, own), (_, peak_deg)) in peaks_deg(&report).into_iter().zip(peaks_deg(&whole)) {
+        assert!((own - peak_deg).abs() < 0.02, "{name}: {own} and {peak_deg} deg");
+    }
+    assert!(report["promised"].is_object(), "{}", report["promised"]);
+    let signals = done(folder, "info after.mcap");
+    assert!(signals.contains("/command/joint_states"), "{signals}");
 }

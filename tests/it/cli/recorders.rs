@@ -189,3 +189,34 @@ fn what_was_doubtful_when_a_log_was_recovered_stays_so() {
     }
     assert!(kept + lost > 0);
 }
+
+/// A PC stamps rows when they arrive, up to 3 ms late by chance: a command made from them is as smooth as their plan.
+#[test]
+fn rows_that_were_stamped_late_by_chance_shake_no_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let largest = |name: &str, late: &dyn Fn(u32) -> f64| {
+        let row = |k: u32| {
+            let t_s = 0.01 * f64::from(k);
+            format!("{:.5},{:.4},{:.4}\n", t_s + late(k), plan(t_s), plan(t_s - 0.15))
+        };
+        let rows: String = (0..3000).map(row).collect();
+        fs::write(folder.join(name), format!("t_s,boom_set_deg,boom_act_deg\n{rows}")).unwrap();
+        let (code, out, error) =
+            said(&run_line(folder, &format!("replan {name} --keep-plan -o next.mcap --force")));
+        assert!(code == 0 || code == 3, "{out}{error}");
+        let table = said(&run_line(folder, "export next.mcap --csv --degrees")).1;
+        let header: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+        let column =
+            header.iter().position(|name| name.contains("command") && name.ends_with("_deg")).unwrap();
+        let sent: Vec<f64> =
+            table.lines().skip(1).map(|line| line.split(',').nth(column).unwrap().parse().unwrap()).collect();
+        let jerks = sent.windows(3).map(|q| (q[2] - 2.0 * q[1] + q[0]).abs());
+        (jerks.fold(0.0, f64::max) / 1e-4, out)
+    };
+    let (even, _) = largest("even.csv", &|_| 0.0);
+    let late = |k: u32| 0.003 * f64::from(k.wrapping_mul(2_654_435_761) >> 16 & 0xff) / 255.0;
+    let (by_chance, out) = largest("late.csv", &late);
+    assert!(by_chance < 1.5 * even + 10.0, "{by_chance} and {even} deg/s2");
+    assert!(out.contains("taken at even steps"), "{out}");
+}
