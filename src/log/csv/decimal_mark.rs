@@ -55,7 +55,8 @@ impl DecimalMark {
                 }
                 Some(_) => self.others += 1,
                 None => {
-                    self.whole += u64::from(cell.iter().filter(|byte| byte.is_ascii_digit()).count() >= 3)
+                    let digits = cell.iter().filter(|byte| byte.is_ascii_digit()).count();
+                    self.whole += u64::from(digits >= 3);
                 }
             }
         }

@@ -216,16 +216,13 @@ fn in_one_form<'a>(
     if text.len() != before {
         had = Some("units or marks of thousands in its cells");
     }
-    let (text, form) = match clocks::joined(name, &text, options, remarks) {
-        Some((joined, form)) => {
-            had = Some(CLOCKS);
-            (Cow::Owned(joined), form)
-        }
-        None => {
-            // Few rows may have no time in common yet.
-            had = had.or(clocks::are_several(name, &text, options).then_some(CLOCKS));
-            (text, options.clone())
-        }
+    let (text, form) = if let Some((joined, form)) = clocks::joined(name, &text, options, remarks) {
+        had = Some(CLOCKS);
+        (Cow::Owned(joined), form)
+    } else {
+        // Few rows may have no time in common yet.
+        had = had.or(clocks::are_several(name, &text, options).then_some(CLOCKS));
+        (text, options.clone())
     };
     match long::widened(name, &text, &form, remarks) {
         Some((wide, form)) => (Cow::Owned(wide), form, Some("a row for each joint")),

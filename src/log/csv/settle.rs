@@ -192,8 +192,8 @@ mod tests {
     #[test]
     fn w_beside_x_y_and_z_is_of_an_orientation() {
         let joints = |headers: [&str; 4]| labels(headers).map(|label| label.is_joint);
-        assert_eq!(joints(["q_des_w", "q_des_x", "q_des_y", "q_des_z"])[0], false);
-        assert_eq!(joints(["q_des_w", "q_act_x", "q_act_y", "q_act_z"])[0], true);
+        assert!(!joints(["q_des_w", "q_des_x", "q_des_y", "q_des_z"])[0]);
+        assert!(joints(["q_des_w", "q_act_x", "q_act_y", "q_act_z"])[0]);
     }
 
     #[test]

@@ -37,13 +37,13 @@ pub(super) fn matrix(
         own.into_iter().chain(usual).reduce(f64::max)
     };
     let scatters: Vec<Option<f64>> = events.map(scatter).collect();
-    let own = Rows { weights: row_weights(&scatters), rows, scatters };
+    let own = Matrix { weights: row_weights(&scatters), rows, scatters };
     let alike = if metric == By::Peak { own.in_proportion(runs.len()) } else { own };
     (runs, alike.rows, alike.weights)
 }
 
 /// Starts by run, with what each scatters by and says.
-struct Rows {
+struct Matrix {
     rows: Vec<Vec<f64>>,
     scatters: Vec<Option<f64>>,
     weights: Vec<f64>,
@@ -52,7 +52,7 @@ struct Rows {
 /// Levels of starts that change by an amount, not in proportion, differ from run to run by so much less where they are not scaled.
 const NOT_IN_PROPORTION: f64 = 0.9;
 
-impl Rows {
+impl Matrix {
     /// The rows scaled to the level of the middle one where what changes does so in proportion: a worn valve adds more to the error of a
     /// fast start, and an offset of a sensor as much to each.
     fn in_proportion(self, runs: usize) -> Self {

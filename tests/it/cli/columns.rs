@@ -198,12 +198,12 @@ fn a_joint_that_has_a_command_alone_is_reported_beside_one_that_has_a_plan() {
     assert!(out.contains("plan-is-command x1") && out.contains("\"boom_cmd_rad\""), "{out}");
     // Where all have one, a command is one.
     let both = text.replace("boom_pos_rad,", "boom_pos_rad,boom_plan_rad,");
-    let both = both.lines().enumerate().map(|(k, line)| match k {
-        0 => format!("{line}\n"),
-        _ => {
-            let cells: Vec<&str> = line.split(',').collect();
-            format!("{},{},{},{},{},{}\n", cells[0], cells[1], cells[2], cells[1], cells[3], cells[4])
+    let both = both.lines().enumerate().map(|(k, line)| {
+        if k == 0 {
+            return format!("{line}\n");
         }
+        let cells: Vec<&str> = line.split(',').collect();
+        format!("{},{},{},{},{},{}\n", cells[0], cells[1], cells[2], cells[1], cells[3], cells[4])
     });
     let (code, out, _) = import(both.collect::<String>(), &[]);
     assert!(code == 0 && became(&out, "boom_cmd_rad") == "command position", "{code}: {out}");
