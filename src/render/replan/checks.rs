@@ -78,6 +78,7 @@ fn short(level: Level, finding: &Finding) -> String {
             let what = if level == Level::Stop { "oscillating by themselves" } else { "not known well" };
             format!("joints {what} ({})", doubtful.collect::<Vec<_>>().join(", "))
         }
+        Finding::Newest { .. } => "the newest run went wrong".to_owned(),
         Finding::TooFast(of) => format!("the plan of {} is faster than the joint", of.joint),
         Finding::Together { .. } => "the plan asks for more than what its joints share".to_owned(),
         Finding::Promise { .. } => "more error came than was promised".to_owned(),
@@ -103,6 +104,7 @@ fn name(finding: &Finding) -> &'static str {
         Finding::Ends { .. } => "Both ends",
         Finding::Rest { .. } => "Rest at end",
         Finding::Limits { .. } => "Limits",
+        Finding::Newest { .. } => "Newest run",
         Finding::TooFast(_) => "Too fast",
         Finding::Together { .. } => "Together",
         Finding::Trust { .. } => "Model",
@@ -165,6 +167,11 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
             position(*kind, *own),
             position(*kind, *most)
         ),
+        Finding::Newest { why } => {
+            format!(
+                "Nothing is learnt from {why}. Mend that first: what went wrong there goes wrong with this command, too."
+            )
+        }
         Finding::Together { limit, asked, at_s } => together(limit, *asked, *at_s),
         Finding::Trust { joints } => trust(joints),
         Finding::Promise { log, promised, measured_mean_peak_rad } => format!(

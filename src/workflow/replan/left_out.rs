@@ -29,6 +29,13 @@ const ALIKE: f64 = 0.05;
 /// Plans that move less are not judged, rad: root mean square about the mean.
 const LEAST_RAD: f64 = 0.5 * DEGREE_RAD;
 
+/// What is said of the runs that are left out.
+pub(super) struct Useless {
+    pub(super) doubts: Remarks,
+    /// Of the newest run, where it is one.
+    pub(super) newest: Option<(Code, String)>,
+}
+
 /// Why runs are left out, by their places.
 type LeftOut = BTreeMap<usize, (Code, String)>;
 
@@ -36,7 +43,7 @@ type LeftOut = BTreeMap<usize, (Code, String)>;
 pub(super) fn without_useless(
     inputs: &Inputs,
     observed: Vec<Recording>,
-) -> (Inputs, Vec<Recording>, Remarks) {
+) -> (Inputs, Vec<Recording>, Useless) {
     let names = told_apart(&inputs.logs);
     let mut left = stopped(&observed);
     twice(&observed, &names, &mut left);
@@ -49,11 +56,14 @@ pub(super) fn without_useless(
     for (place, (code, why)) in &left {
         doubts.add(*code, 1, format!("{}: {why}; nothing is learnt from this run", names[*place]));
     }
+    let newest = observed.len().checked_sub(1).and_then(|newest| Some((newest, left.get(&newest)?)));
+    let newest = newest.filter(|(_, (code, _))| *code != Code::SameRun);
+    let newest = newest.map(|(place, (code, why))| (*code, format!("{}: {why}", names[place])));
     let stays = |k: &usize| !left.contains_key(k);
     let logs = inputs.logs.iter().enumerate().filter(|(k, _)| stays(k)).map(|(_, path)| path.clone());
     let inputs = Inputs { logs: logs.collect(), ..inputs.clone() };
     let observed = observed.into_iter().enumerate().filter(|(k, _)| stays(k)).map(|(_, run)| run);
-    (inputs, observed.collect(), doubts)
+    (inputs, observed.collect(), Useless { doubts, newest })
 }
 
 /// Runs that were given before, and are not left out there.
@@ -108,7 +118,7 @@ fn early(observed: &[Recording], left: &mut LeftOut) {
             let why = format!(
                 "its joints led their plan by {by_s:.1} s in the mean of its motion: what was sent came before its time"
             );
-            (k, (Code::Paused, why))
+            (k, (Code::OtherTime, why))
         }));
     }
 }

@@ -92,7 +92,7 @@ pub fn run(
     let observed = fit::observed(&inputs.logs, &inputs.read).map_err(fit::FitFailure::from)?;
     let (inputs, observed, mut doubts) = in_order(inputs, observed);
     let (inputs, observed, useless) = without_useless(&inputs, observed);
-    doubts.extend(useless);
+    doubts.extend(useless.doubts);
     let (inputs, observed) = (&inputs, &observed[..]);
     let path = inputs.logs.last().ok_or(ReplanFailure::NoLog)?;
     for (path, recording) in inputs.logs.iter().zip(observed) {
@@ -190,7 +190,9 @@ pub fn run(
         decision,
     };
     let last = (last, newest.source.measured_delay_s.is_some());
-    outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)
+    let mut replanned = outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)?;
+    replanned.newest_left_out = useless.newest;
+    Ok(replanned)
 }
 
 /// Searches other timings of the task's key points.

@@ -130,6 +130,8 @@ pub struct Replanned {
     pub points_hz: f64,
     /// Whether a delay of the measurement was given, and taken off.
     pub delay_known: bool,
+    /// Why nothing was learnt from the newest run, where that is so.
+    pub newest_left_out: Option<(Code, String)>,
     /// The task.
     pub request: Option<PlanRequest>,
     /// Doubts.
@@ -265,6 +267,7 @@ pub(super) fn replanned(
         starts_s,
         points_hz,
         delay_known,
+        newest_left_out: None,
         request: last.request,
         trajectory: last.trajectory,
         remarks,

@@ -220,3 +220,29 @@ fn rows_that_were_stamped_late_by_chance_shake_no_command() {
     assert!(by_chance < 1.5 * even + 10.0, "{by_chance} and {even} deg/s2");
     assert!(out.contains("taken at even steps"), "{out}");
 }
+
+/// The operator plays a command from the zero of another clock, 0.6 s early.
+#[test]
+fn a_command_that_was_sent_early_teaches_nothing_and_none_is_to_be_sent_before_that_is_mended() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let table = |name: &str, sent: &dyn Fn(f64) -> f64, came: &dyn Fn(f64) -> f64| {
+        let row = |k: u32| {
+            let t = 0.01 * f64::from(k);
+            format!("{t:.2},{:.4},{:.4},{:.4}\n", plan(t), sent(t), came(t))
+        };
+        let rows: String = (0..4000).map(row).collect();
+        let header = "t_s,boom_planned_deg,boom_command_deg,boom_measured_deg";
+        fs::write(folder.join(name), format!("{header}\n{rows}")).unwrap();
+    };
+    table("first.csv", &plan, &late(0.15));
+    table("early.csv", &|t| plan(t + 0.75), &late(-0.6));
+    let (code, out, error) =
+        said(&run_line(folder, "replan first.csv early.csv --keep-plan --gain 0.5 -o next.mcap"));
+    assert!(code == 3, "{code}: {error}");
+    assert!(
+        out.contains("early.csv: its joints led their plan by 0.") && out.contains("Do not send it"),
+        "{out}"
+    );
+    assert!(out.contains("Nothing is learnt from early.csv"), "{out}");
+}

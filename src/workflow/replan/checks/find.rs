@@ -44,6 +44,7 @@ pub(super) fn all(replanned: &Replanned) -> impl Iterator<Item = Check> {
     let sent = command.map_or(plan, |command| &command.series);
     let always = [ends(plan, sent), rest(sent, command), limits(replanned, command), trust(replanned)];
     let others = [
+        newest(replanned),
         together(replanned).or_else(|| too_fast(replanned)),
         promise(replanned),
         Some(outlook(replanned)),
@@ -168,6 +169,13 @@ fn fastest(command: &Commanded) -> Option<Fastest> {
     let (name, kind) = (joint.name.clone(), joint.kind);
     let speed_rad_s = most(speed.iter().copied());
     Some(Fastest { joint: name, kind, speed_rad_s, ratio: joint.speed_ratio })
+}
+
+/// A newest run from which nothing is learnt: what went wrong there goes wrong again.
+fn newest(replanned: &Replanned) -> Option<Check> {
+    let (code, why) = replanned.newest_left_out.clone()?;
+    let level = if code == Code::OtherTime { Level::Stop } else { Level::Caution };
+    Some(Check { level, finding: Finding::Newest { why } })
 }
 
 /// A plan that asks for less than this share beyond what its joints share is not told.

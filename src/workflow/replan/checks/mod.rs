@@ -112,6 +112,11 @@ pub enum Finding {
         /// When, s.
         at_s: f64,
     },
+    /// Nothing was learnt from the newest run.
+    Newest {
+        /// Its log, and why.
+        why: String,
+    },
     /// How well each joint is predicted.
     Trust {
         /// By joint of the plan.
