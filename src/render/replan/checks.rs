@@ -116,6 +116,12 @@ fn name(finding: &Finding) -> &'static str {
     }
 }
 
+fn newest(why: &str) -> String {
+    format!(
+        "Nothing is learnt from {why}. Mend that first: what went wrong there goes wrong with this command, too."
+    )
+}
+
 fn together(limit: &SharedLimit, asked: f64, at_s: f64) -> String {
     format!(
         "{} The plan asks for {asked:.2} times what they share, most at {at_s:.1} s: no command mends that, more time or fewer joints at \
@@ -167,11 +173,7 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
             position(*kind, *own),
             position(*kind, *most)
         ),
-        Finding::Newest { why } => {
-            format!(
-                "Nothing is learnt from {why}. Mend that first: what went wrong there goes wrong with this command, too."
-            )
-        }
+        Finding::Newest { why } => newest(why),
         Finding::Together { limit, asked, at_s } => together(limit, *asked, *at_s),
         Finding::Trust { joints } => trust(joints),
         Finding::Promise { log, promised, measured_mean_peak_rad } => format!(

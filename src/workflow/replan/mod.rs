@@ -95,12 +95,7 @@ pub fn run(
     doubts.extend(useless.doubts);
     let (inputs, observed) = (&inputs, &observed[..]);
     let path = inputs.logs.last().ok_or(ReplanFailure::NoLog)?;
-    for (path, recording) in inputs.logs.iter().zip(observed) {
-        let remarks = recording.remarks.as_slice();
-        if let Some(remark) = remarks.iter().find(|remark| remark.code.spoils_runs()) {
-            return Err(ReplanFailure::Spoilt { path: path.clone(), why: remark.message.clone() });
-        }
-    }
+    unspoilt(inputs, observed)?;
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
     correctable(path, newest, &inputs.rules)?;
     let last = Last::of(path, newest, inputs)?;
@@ -193,6 +188,17 @@ pub fn run(
     let mut replanned = outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)?;
     replanned.newest_left_out = useless.newest;
     Ok(replanned)
+}
+
+/// An error for a run that is none of its plan.
+fn unspoilt(inputs: &Inputs, observed: &[Recording]) -> Result<(), ReplanFailure> {
+    for (path, recording) in inputs.logs.iter().zip(observed) {
+        let remarks = recording.remarks.as_slice();
+        if let Some(remark) = remarks.iter().find(|remark| remark.code.spoils_runs()) {
+            return Err(ReplanFailure::Spoilt { path: path.clone(), why: remark.message.clone() });
+        }
+    }
+    Ok(())
 }
 
 /// Searches other timings of the task's key points.
