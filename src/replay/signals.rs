@@ -19,8 +19,9 @@ const PLAN_POINTS: usize = 5;
 /// A plan has samples of its own where these are no farther apart, in sample intervals of the measurement.
 const AS_DENSE: f64 = 1.5;
 
-/// Noise of which a fit sees so many times more than white noise would leave is alike from sample to sample; looked for so often.
-const ALIKE: f64 = 1.2;
+/// Noise of which a fit sees so many of its standard errors more than white noise would leave is alike from sample to sample; looked for
+/// so often.
+const ALIKE: f64 = 4.0;
 const ROUNDS: usize = 2;
 
 /// More deviations than this make their median no better; longer signals are thinned evenly.
@@ -164,8 +165,10 @@ fn window(pair: &Pair, sample_interval_s: f64, noise: &Noise, rules: &Rules) -> 
             let speed = seen * (1.5 * sample_interval_s / half_s.powi(3)).sqrt();
             rules.start_sigmas * speed > rules.sizes(pair.kind).start_speed
         };
-        let alike = |seen: &f64| noise.lsb.is_none() && *seen > ALIKE * sigma && starts(*seen);
-        let Some(seen) = seen.filter(alike) else { break };
+        let alike = |(seen, error): &(f64, f64)| {
+            noise.lsb.is_none() && *seen > (1.0 + ALIKE * error) * sigma && starts(*seen)
+        };
+        let Some((seen, _)) = seen.filter(alike) else { break };
         sigma = seen;
     }
     (window_s(sigma), sigma)

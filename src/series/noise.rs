@@ -44,13 +44,15 @@ const WINDOWS: usize = 50;
 
 /// Noise as a speed that is fitted over `window_s` sees it: the standard deviation of white noise that leaves as much of a cubic in
 /// windows of this length, s, with samples that are usually so far apart, s, of which a smooth motion leaves next to nothing. More than [`white`] where neighbouring samples are
-/// alike, as behind a filter. `None` of too few windows of evenly spaced samples.
+/// alike, as behind a filter; and its standard error as a share of it. `None` of too few windows of evenly spaced samples.
 pub(crate) fn over_window(
     t_s: &[f64],
     position: &[f64],
     segments: &[Range<usize>],
     (window_s, usual_s): (f64, f64),
-) -> Option<f64> {
+) -> Option<(f64, f64)> {
+    /// Of a robust standard deviation of one normal number, as a share of it.
+    const ERROR: f64 = 1.17;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
     let cubic = cubic((window_s / usual_s).clamp(0.0, 1e4).round() as usize + 1)?;
     let even = |at: usize| {
@@ -61,7 +63,7 @@ pub(crate) fn over_window(
     let starts =
         segments.iter().flat_map(|s| (s.start..(s.end + 1).saturating_sub(cubic.len())).step_by(stride));
     let left: Vec<f64> = starts.filter(|at| even(*at)).map(|at| dot(&cubic, &position[at..])).collect();
-    (left.len() >= WINDOWS).then(|| SIGMA_PER_MAD * mad(&left))
+    (left.len() >= WINDOWS).then(|| (SIGMA_PER_MAD * mad(&left), ERROR / (left.len() as f64).sqrt()))
 }
 
 /// The cubic over evenly spaced samples that holds nothing of a parabola, of norm 1; `None` of fewer than five.
@@ -157,7 +159,7 @@ mod tests {
         let (t_s, x) = swing(0.0);
         let (t_s, white_x) = (&t_s[..3980], &x[..3980]);
         let filtered: Vec<f64> = x.windows(10).take(3980).map(|ten| ten.iter().sum::<f64>() / 10.0).collect();
-        let of = |x: &[f64]| over_window(t_s, x, whole, (0.3, 0.01)).unwrap() / SIGMA_RAD;
+        let of = |x: &[f64]| over_window(t_s, x, whole, (0.3, 0.01)).unwrap().0 / SIGMA_RAD;
         let [plain, behind] = [of(white_x), of(&filtered)];
         assert!((plain - 1.0).abs() < 0.15, "{plain}");
         assert!((0.5..1.1).contains(&behind), "{behind}");
