@@ -47,8 +47,8 @@ pub(super) fn without_useless(
     let names = told_apart(&inputs.logs);
     let mut left = stopped(&observed);
     twice(&observed, &names, &mut left);
-    held_back(&observed, &mut left);
-    early(&observed, &mut left);
+    unlike_others(&observed, &mut left, held_back);
+    unlike_others(&observed, &mut left, early);
     let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
     let dead = dead(&stay.iter().map(|k| &observed[*k]).collect::<Vec<_>>());
     left.extend(dead.into_iter().map(|(place, why)| (stay[place], why)));
@@ -88,57 +88,48 @@ fn stopped(observed: &[Recording]) -> LeftOut {
     others.iter().enumerate().filter_map(of).collect()
 }
 
-/// Runs in which what was sent came after its plan, where there are others.
-fn held_back(observed: &[Recording], left: &mut LeftOut) {
+/// Runs of which something is to be said, where there are others of which it is not.
+fn unlike_others(
+    observed: &[Recording],
+    left: &mut LeftOut,
+    why: impl Fn(&Recording) -> Option<(Code, String)>,
+) {
     let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
-    let behind: Vec<(usize, f64)> =
-        stay.iter().filter_map(|k| Some((*k, behind_s(&observed[*k])?))).collect();
-    if behind.len() < stay.len() {
-        left.extend(behind.into_iter().map(|(k, by_s)| {
-            let why = "what was sent came after its plan, by";
-            (
-                k,
-                (
-                    Code::Paused,
-                    format!(
-                        "{why} {by_s:.1} s in the mean of its motion: an override or a pause held it back"
-                    ),
-                ),
-            )
-        }));
+    let found: Vec<(usize, (Code, String))> =
+        stay.iter().filter_map(|k| Some((*k, why(&observed[*k])?))).collect();
+    if found.len() < stay.len() {
+        left.extend(found);
     }
 }
 
-/// Runs in which joints led their plan by far, where there are others: what was sent came too early.
-fn early(observed: &[Recording], left: &mut LeftOut) {
-    let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
-    let early: Vec<(usize, f64)> = stay.iter().filter_map(|k| Some((*k, led_by_s(&observed[*k])?))).collect();
-    if early.len() < stay.len() {
-        left.extend(early.into_iter().map(|(k, by_s)| {
-            let why = format!(
-                "its joints led their plan by {by_s:.1} s in the mean of its motion: what was sent came before its time"
-            );
-            (k, (Code::OtherTime, why))
-        }));
-    }
+/// What was sent came after its plan.
+fn held_back(run: &Recording) -> Option<(Code, String)> {
+    let by_s = -ahead_of_plan_s(run, &run.command.as_ref()?.series)?;
+    let why = || {
+        format!(
+            "what was sent came after its plan, by {by_s:.1} s in the mean of its motion: an override or a pause held it back"
+        )
+    };
+    (by_s > BEHIND_S).then(|| (Code::Paused, why()))
 }
 
-/// By how much measured joints led their plan, s, if something else was sent and came early.
-fn led_by_s(run: &Recording) -> Option<f64> {
-    let [from_s, to_s] = run.planned.span_s()?;
-    let of = |series: &Series| cut(&*bridged(series).ok()?, from_s, to_s).ok();
-    let plan = of(&run.planned)?;
-    let sent_s = ahead_s(&of(&run.command.as_ref()?.series)?, &plan);
-    let by_s = ahead_s(&of(&run.measured)?, &plan);
-    (by_s > EARLY_S && sent_s > by_s).then_some(by_s)
+/// Joints led their plan by far, and what was sent by more: it came too early.
+fn early(run: &Recording) -> Option<(Code, String)> {
+    let sent_s = ahead_of_plan_s(run, &run.command.as_ref()?.series)?;
+    let by_s = ahead_of_plan_s(run, &run.measured)?;
+    let why = || {
+        format!(
+            "its joints led their plan by {by_s:.1} s in the mean of its motion: what was sent came before its time"
+        )
+    };
+    (by_s > EARLY_S && sent_s > by_s).then(|| (Code::OtherTime, why()))
 }
 
-/// How much later than its plan a command was sent, s, if it was held back.
-fn behind_s(run: &Recording) -> Option<f64> {
+/// How far joints of a run are ahead of their plan, s.
+fn ahead_of_plan_s(run: &Recording, series: &Series) -> Option<f64> {
     let [from_s, to_s] = run.planned.span_s()?;
     let of = |series: &Series| cut(&*bridged(series).ok()?, from_s, to_s).ok();
-    let by_s = -ahead_s(&of(&run.command.as_ref()?.series)?, &of(&run.planned)?);
-    (by_s > BEHIND_S).then_some(by_s)
+    Some(ahead_s(&of(series)?, &of(&run.planned)?))
 }
 
 /// Runs in which a joint stood that answers in another one, and, of those before the newest, in the newest.
