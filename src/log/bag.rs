@@ -28,7 +28,7 @@ pub fn recording_files(paths: &[PathBuf], remarks: &mut Remarks) -> Result<Vec<P
 }
 
 fn directory(path: &Path, remarks: &mut Remarks) -> Result<Vec<PathBuf>, LogError> {
-    let description = path.join("metadata.yaml");
+    let description = path.join(DESCRIPTION);
     if description.is_file() {
         let named = named_files(&description)?;
         let (there, missing): (Vec<_>, Vec<_>) =
@@ -94,6 +94,9 @@ fn named_files(description: &Path) -> Result<Vec<String>, LogError> {
 const STORAGES: [&str; 2] = ["mcap", "sqlite3"];
 /// Endings of the files of a bag, the first one counts where it is there with several.
 const ENDINGS: [&str; 4] = [".mcap", ".db3", ".mcap.zstd", ".db3.zstd"];
+
+/// What a recorder says of the files of its bag.
+pub(super) const DESCRIPTION: &str = "metadata.yaml";
 
 const LIST: &str = "relative_file_paths";
 

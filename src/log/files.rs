@@ -23,6 +23,8 @@ pub struct LogFiles {
     files: Vec<(PathBuf, Source)>,
     /// Whether their order is known, as in a bag; single files are ordered by the recorder's clock.
     ordered: bool,
+    /// Whether a recorder says that they belong together, as in a bag with its description.
+    described: bool,
     remarks: Remarks,
 }
 
@@ -31,6 +33,7 @@ pub struct LogFiles {
 pub struct ScannedLog<'a> {
     pub(super) files: Vec<ScannedFile<'a>>,
     pub(super) ordered: bool,
+    pub(super) described: bool,
     pub(super) remarks: Remarks,
 }
 
@@ -105,11 +108,12 @@ impl LogFiles {
 
     fn opened(inputs: Vec<Input>, columns: &CsvOptions) -> Result<Self, LogError> {
         let (mut remarks, mut doubts) = (Remarks::default(), Remarks::default());
-        let (mut files, mut ordered) = (Vec::new(), false);
+        let (mut files, mut ordered, mut described) = (Vec::new(), false, false);
         for input in inputs {
             let parts = match resolved(input)? {
                 Input::Path(path) => {
                     ordered |= path.is_dir();
+                    described |= path.join(bag::DESCRIPTION).is_file();
                     let parts = bag::recording_files(&[path], &mut remarks)?;
                     parts.into_iter().map(Input::Path).collect()
                 }
@@ -121,7 +125,7 @@ impl LogFiles {
             }
         }
         remarks.extend(doubts);
-        Ok(Self { files, ordered, remarks })
+        Ok(Self { files, ordered, described, remarks })
     }
 
     pub(super) fn sources(&self) -> impl Iterator<Item = (&Path, &Source)> {
@@ -141,7 +145,8 @@ impl LogFiles {
     pub fn scan(&self) -> Result<ScannedLog<'_>, LogError> {
         let files = self.files.iter().map(|(path, source)| ScannedFile::of(path, source));
         let files = files.collect::<Result<_, _>>()?;
-        Ok(ScannedLog { files, ordered: self.ordered, remarks: self.remarks.clone() })
+        let Self { ordered, described, .. } = *self;
+        Ok(ScannedLog { files, ordered, described, remarks: self.remarks.clone() })
     }
 }
 

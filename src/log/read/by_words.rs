@@ -87,7 +87,7 @@ fn recorded(log: &ScannedLog<'_>, run: &CsvRun, beside: bool, options: &ReadOpti
         files.push(ScannedFile::of(one.path, one.source).ok()?);
     }
     files.push(ScannedFile::of(log.files.first()?.path, &source).ok()?);
-    let log = ScannedLog { files, ordered: true, remarks };
+    let log = ScannedLog { files, ordered: true, described: log.described, remarks };
     let mut found = super::recording(extract(&log, options), options).ok()?;
     // A row that tells of some joints has no number of the others; those that are none were counted as they were read.
     let Topics { planned, measured, command, .. } = Topics::default();

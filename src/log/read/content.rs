@@ -153,6 +153,8 @@ pub(super) struct Extracted {
     /// Of the first file.
     pub(super) path: PathBuf,
     pub(super) files: Vec<FileInfo>,
+    /// Whether a recorder says that they belong together.
+    pub(super) described: bool,
     pub(super) topics: Vec<TopicCount>,
     pub(super) sources: Vec<Source>,
     /// Index of the topic of a URDF, and its text: the first one of the topic with the shortest name.

@@ -32,7 +32,8 @@ const LARGEST_ATTACHMENT: u64 = 64 << 20;
 pub(super) fn extract(log: &ScannedLog<'_>, options: &ReadOptions) -> Extracted {
     count(|passes| passes.decoded += log.files.len() as u64);
     let path = log.files.first().map(|file| file.path.to_owned()).unwrap_or_default();
-    let mut out = Extracted { path, remarks: log.remarks.clone(), ..Extracted::default() };
+    let described = log.described;
+    let mut out = Extracted { path, described, remarks: log.remarks.clone(), ..Extracted::default() };
     let mut files: Vec<&ScannedFile<'_>> = log.files.iter().collect();
     if !log.ordered {
         files.sort_by_cached_key(|file| (overlap::begins_ns(&file.layout), file.path));
@@ -47,6 +48,7 @@ pub(super) fn extract(log: &ScannedLog<'_>, options: &ReadOptions) -> Extracted 
         // A summary that leaves out channels is no summary: look for them in the chunks.
         out = Extracted {
             path: out.path,
+            described,
             files: out.files,
             attachments: out.attachments,
             metadata: out.metadata,

@@ -109,7 +109,7 @@ pub fn survey(paths: &[PathBuf], options: &ReadOptions) -> Result<Survey, LogErr
 pub fn survey_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Survey, LogError> {
     let source = bytes.to_vec().into();
     let file = ScannedFile::of(Path::new("memory.mcap"), &source)?;
-    let log = ScannedLog { files: vec![file], ordered: true, remarks: Remarks::default() };
+    let log = ScannedLog { files: vec![file], ordered: true, described: false, remarks: Remarks::default() };
     Ok(log.survey(options))
 }
 

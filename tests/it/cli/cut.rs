@@ -213,6 +213,11 @@ fn files_of_one_folder_that_are_hours_apart_are_no_one_run() {
             "{line}: {error}"
         );
     }
+    // What a recorder calls one bag is one, however long it paused.
+    let bag = "rosbag2_bagfile_information:\n  storage_identifier: mcap\n  relative_file_paths: [one.mcap, three.mcap]\n";
+    fs::write(folder.join("runs/metadata.yaml"), bag).unwrap();
+    let (code, out, error) = said(&run_line(folder, "report runs"));
+    assert!(code == 0 || code == 3, "{out}{error}");
 }
 
 /// A table whose plan, in motion until 4.5 s and from 7 s to 9.5 s, was recorded to an instant.
