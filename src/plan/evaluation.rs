@@ -1,7 +1,10 @@
 //! One plan, evaluated: its objectives and how near it comes to every limit.
 
 use super::{Evaluator, Margin, PlanError, Setup, Via, excess, via::Through};
-use crate::{series::JointKind, task::Objectives};
+use crate::{
+    series::JointKind,
+    task::{Objective, Objectives},
+};
 
 /// A plan with its objectives, its costs by joint and its margins.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,13 +32,29 @@ pub struct PlanEvaluation {
 }
 
 impl PlanEvaluation {
-    /// The same curve in so many times the time; `None` where the task does not have it.
+    /// The same curve with so many times the time of each interval, dwells as they are; `None` where the task does not have it.
     pub(crate) fn paced(&self, setup: &Setup, by: f64) -> Option<Self> {
-        let first_s = self.times_s.first().copied()?;
-        let at = |t_s: f64| first_s + by * (t_s - first_s);
-        let times_s: Vec<f64> = self.times_s.iter().map(|t_s| at(*t_s)).collect();
+        const ROUNDED: f64 = 1e-9;
+        let interval_s = setup.intervals_s(&self.times_s).ok()?;
+        let [least_s, most_s] = setup.interval_s;
+        let allowed = |s: &f64| (least_s * (1.0 - ROUNDED)..=most_s * (1.0 + ROUNDED)).contains(s);
+        let paced_s: Vec<f64> = interval_s.iter().map(|s| by * s).collect();
+        if !paced_s.iter().all(allowed) {
+            return None;
+        }
+        let times_s = setup.times_s(&paced_s);
+        // Before it arrives each interval takes its part of the new time.
+        let at = |t_s: f64| {
+            let next = self.times_s.partition_point(|arrival_s| *arrival_s < t_s).clamp(1, interval_s.len());
+            times_s[next] - by * (self.times_s[next] - t_s)
+        };
         let via: Vec<Via> = self.via.iter().map(|via| Via { t_s: at(via.t_s), ..via.clone() }).collect();
         Self::through(setup, &times_s, &via).ok()
+    }
+
+    /// Time of movement, s: without dwells.
+    pub(crate) fn moving_s(&self, setup: &Setup) -> f64 {
+        self.objectives[Objective::Duration] - setup.resting_s()
     }
 
     /// Judges arrivals at the key points, s.
@@ -85,5 +104,25 @@ impl PlanEvaluation {
         let mut broken: Vec<&Margin> = self.margins.iter().filter(|margin| margin.broken()).collect();
         broken.sort_by(|a, b| b.share.total_cmp(&a.share));
         broken
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{arm::Arm, task::Task};
+
+    #[test]
+    fn a_plan_at_another_pace_keeps_its_dwells_and_the_bounds_of_its_intervals() {
+        let task = Task::parse(include_str!("../../sample-logs/tasks/task-1.toml")).unwrap();
+        let setup = Setup::new(&task, Arm::sample().unwrap()).unwrap();
+        let [least_s, most_s] = task.interval_s;
+        let plan = PlanEvaluation::of(&setup, &setup.times_s(&[6.0; 5])).unwrap();
+        let slower = plan.paced(&setup, 1.5).unwrap();
+        let intervals_s = setup.intervals_s(&slower.times_s).unwrap();
+        assert!(intervals_s.iter().all(|s| (s - 9.0).abs() < 1e-9), "{intervals_s:?}");
+        assert!((slower.moving_s(&setup) - 1.5 * plan.moving_s(&setup)).abs() < 1e-9);
+        assert_eq!(plan.paced(&setup, 1.01 * most_s / 6.0), None);
+        assert_eq!(plan.paced(&setup, 0.99 * least_s / 6.0), None);
     }
 }

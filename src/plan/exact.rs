@@ -14,8 +14,9 @@ use crate::{
     threads,
 };
 
-/// Descents under ever tighter limits, and slowings down, that a plan is given.
-const TRIES: usize = 4;
+/// Descents under ever tighter limits that a plan is given, and slowings down.
+const TRIES: usize = 8;
+const SLOWINGS: usize = 4;
 /// Evaluations of each descent.
 const EVALUATIONS: u64 = 400;
 /// Distance kept from a limit that was found broken, as a share of it.
@@ -143,25 +144,31 @@ pub(super) fn kept_front(setup: &Setup, front: &[Timing], most: usize) -> (Vec<T
         },
     );
     let sound = checked.iter().all(|(_, as_it_was)| *as_it_was);
-    let mut front: Vec<Timing> = checked.into_iter().filter_map(|(timing, _)| timing).collect();
+    let mut slowed: Vec<Timing> = checked.into_iter().filter_map(|(timing, _)| timing).collect();
     if sound {
-        return (front, 0);
+        return (slowed, 0);
     }
-    let fastest = front
-        .iter()
-        .min_by(|a, b| a.objectives[Objective::Duration].total_cmp(&b.objectives[Objective::Duration]));
+    // Slowing down all of it gave away time wherever the limit was kept, and a torque at rest is no less for it: the
+    // plan before goes another way.
+    let quicker = fastest_of(&slowed).map(|plan| Timing {
+        interval_s: plan.interval_s.iter().map(|s| s * QUICKER).collect(),
+        ..plan.clone()
+    });
     let mut used = 0;
-    if let Some(fastest) = fastest.cloned() {
-        // Slowing down all of it gave away time wherever the limit was kept.
-        let quick =
-            Timing { interval_s: fastest.interval_s.iter().map(|s| s * QUICKER).collect(), ..fastest };
-        let (found, evaluations) = kept(setup, &quick, Merit::alone(Objective::Duration), Ceilings::NONE);
-        used = evaluations;
-        front.extend(found);
+    for start in quicker.iter().chain(fastest_of(front)) {
+        let (found, evaluations) = kept(setup, start, Merit::alone(Objective::Duration), Ceilings::NONE);
+        used += evaluations;
+        slowed.extend(found);
     }
-    let mut front = thinned(setup, &front, most);
+    let mut front = thinned(setup, &slowed, most);
     front.sort_by(|a, b| a.objectives[Objective::Duration].total_cmp(&b.objectives[Objective::Duration]));
     (front, used)
+}
+
+fn fastest_of(front: &[Timing]) -> Option<&Timing> {
+    front
+        .iter()
+        .min_by(|a, b| a.objectives[Objective::Duration].total_cmp(&b.objectives[Objective::Duration]))
 }
 
 /// Factor on the fastest plan's times before its last descent, so that it meets its limits again.
@@ -170,7 +177,7 @@ const QUICKER: f64 = 0.97;
 /// The plan slowed down all along until it keeps its limits.
 fn slow(setup: &Setup, evaluator: &mut Evaluator, interval_s: &[f64]) -> Option<Timing> {
     let mut here = interval_s.to_vec();
-    for _ in 0..TRIES {
+    for _ in 0..SLOWINGS {
         let margins = setup.exact(&here, evaluator)?;
         if keeps(&margins) {
             return evaluated(setup, evaluator, here);

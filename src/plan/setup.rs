@@ -16,6 +16,8 @@ use crate::{
 
 /// Angles as close as this are one, rad.
 const ROUNDED_RAD: f64 = 1e-9;
+/// Key points that differ by less are equal, rad or m.
+const EQUAL_RAD: f64 = 1e-6;
 
 /// A departure within this is at zero, s.
 const FROM_ZERO_S: f64 = 1e-9;
@@ -245,7 +247,9 @@ fn stops(points: &KeyPoints, ends: &Ends, dwell_s: &[Option<f64>]) -> Vec<usize>
     let last = points.len() - 1;
     let resting = Ends::at_rest(points.joints());
     let free = |point: usize| dwell_s[point].is_none() && (point > 0 && point < last || *ends == resting);
-    let same = |point: usize| point < last && points.of(point) == points.of(point + 1);
+    // Postures that poses lead to differ by rounding.
+    let equal = |(a, b): (&f64, &f64)| (a - b).abs() <= EQUAL_RAD;
+    let same = |point: usize| point < last && points.of(point).iter().zip(points.of(point + 1)).all(equal);
     (0..=last).filter(|&point| free(point) && (same(point) || point > 0 && same(point - 1))).collect()
 }
 

@@ -173,7 +173,8 @@ pub fn run(
         let by = (&*found.front, (Rule::Best(Objective::RmsJerk), None));
         // A free shape that was found can be slower, whatever a descent from other times comes to.
         let slower = || {
-            let by = held[Objective::Duration] / own.plan.objectives[Objective::Duration];
+            let more_s = held[Objective::Duration] - own.plan.objectives[Objective::Duration];
+            let by = 1.0 + more_s / own.plan.moving_s(setup);
             let plan = own.plan.paced(setup, by).filter(|_| own.shaped.is_some() && by >= 1.0)?;
             (plan.broken().is_empty() && plan.objectives.within(held)).then_some(plan)
         };
