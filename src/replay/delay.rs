@@ -67,6 +67,7 @@ fn search(signals: &Signals, motion: &Motion, window_s: f64) -> Search {
         rest_s: motion.rest_before_s,
         window_s,
         stop_speed: signals.sizes.stop_speed,
+        sticks: true,
     }
 }
 
@@ -75,7 +76,7 @@ pub(super) fn planned_onset(pair: &Pair, signals: &Signals, motion: &Motion, rul
     let blurred = !motion.reversal && motion.step(&pair.planned).is_none();
     let rounded = || stairs::onset(pair, motion, signals.planned_step?, signals.sizes.stop_speed, rules);
     let noisy = || {
-        let search = search(signals, motion, signals.noisy_plan_s?);
+        let search = Search { sticks: false, ..search(signals, motion, signals.noisy_plan_s?) };
         onset(&pair.t_s, &pair.planned, &search, rules)
     };
     let found = if blurred { rounded().or_else(noisy) } else { None };
@@ -208,6 +209,7 @@ fn unshaken(
         rest_s: crossing_s - planned_s + window_s,
         window_s,
         stop_speed: signals.sizes.stop_speed,
+        sticks: true,
     };
     onset_of(pair, &search, rules)
 }

@@ -243,7 +243,8 @@ proptest! {
         let (a, b) = (onsets(&of(&pair)), onsets(&of(&bare)));
         prop_assert_eq!(a.len(), b.len());
         for (a, b) in a.iter().zip(&b) {
-            prop_assert!(a.0 == b.0 && (a.1 - b.1).abs() < 0.03, "{:?} {:?}", a, b);
+            // Slopes of a plan that starts gently are smoothed over some hundredths of a second.
+            prop_assert!(a.0 == b.0 && (a.1 - b.1).abs() < 0.08, "{:?} {:?}", a, b);
         }
     }
 }

@@ -130,7 +130,7 @@ fn whole_run(report: &Report, all: &Together) -> Markup {
             p { (format!("peak {} at {:.2} s; 95 % of the time below {}", position(kind, error.peak), error.peak_time_s, position(kind, error.p95))) }
         }
         @if let Some(path) = whole.path_error {
-            p { (format!("distance to the planned path, whatever the time, norm over joints: rms {}, peak {}; rms {} with time", position(kind, path.rms), position(kind, path.peak), position(kind, path.timed_rms))) }
+            p { (format!("distance to the planned path, at any time within {:.0} s, norm over joints: rms {}, peak {}; rms {} with time", report.replay.rules.path_window_s, position(kind, path.rms), position(kind, path.peak), position(kind, path.timed_rms))) }
         }
         @if !report.remarks.is_empty() {
             p { a href="#remarks" { (counted(report.remarks.as_slice().len(), "remark") + " on the data") } }

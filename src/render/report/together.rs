@@ -122,8 +122,9 @@ impl<'a> Together<'a> {
         }
         if let Some(path) = &self.run.path_error {
             lines.push(format!(
-                "Distance to the planned path, whatever the time, as the norm over all joints: rms {}, peak {}; rms {} with \
-                 time ({} instants).",
+                "Distance to the planned path, at any time within {:.0} s, as the norm over all joints: rms {}, peak {}; rms \
+                 {} with time ({} instants).",
+                self.replay.rules.path_window_s,
                 position(kind, path.rms),
                 position(kind, path.peak),
                 position(kind, path.timed_rms),

@@ -40,7 +40,7 @@ pub static JOINT: &[Row] = &[
             |j| j.standstill_error.is_some(),
             |j| Some(j.standstill_error?.peak_time_s),
         )),
-    Row::new("path_rms", "", "path error", "Root mean square distance to the planned path, whatever the time.", Position, Number(|j| Some(j.path_error?.rms)))
+    Row::new("path_rms", "", "path error", "Root mean square distance to the planned path, at any time within 2 s.", Position, Number(|j| Some(j.path_error?.rms)))
         .compared(Whole(|run| Some(run.path_error?.rms))),
     Row::new("lag_s", "lag", "lag", "Time by which the measured speed follows the planned one, with its 95 % interval.", Duration, Number(|j| j.lag_s))
         .within(|j| j.lag_interval_s)
