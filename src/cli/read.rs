@@ -47,7 +47,7 @@ pub(super) struct ReadArgs {
     #[arg(long)]
     measured_degrees: bool,
 
-    /// By how much the stamps of the measurement are later than its samples were taken (slow recorder or bus); they are moved back by that
+    /// By how much the stamps of the measurement are later than its samples were taken (slow recorder or bus); they are moved back by that; 0 says that plan and measurement are of one clock
     #[arg(long = "measured-delay-ms", value_name = "MS", value_parser = number::delay_ns, allow_negative_numbers = true)]
     measured_delay_ns: Option<i64>,
 
@@ -107,6 +107,7 @@ impl ReadArgs {
             planned_in_degrees: self.planned_degrees,
             measured_in_degrees: self.measured_degrees,
             measured_delay_ns: self.measured_delay_ns.unwrap_or_default(),
+            one_clock: self.measured_delay_ns == Some(0),
             slides: self.slides.iter().cloned().collect(),
             continuous: self.continuous.clone(),
             map: self.map.clone(),

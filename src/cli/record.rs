@@ -19,7 +19,10 @@ use crate::{
     atomic_file::is_keeping,
     document::pretty,
     log::ReadOptions,
-    render::record as words,
+    render::{
+        kit::{argument, command},
+        record as words,
+    },
     workflow::{
         join,
         record::{Inputs, Part, Progress, run},
@@ -159,7 +162,13 @@ impl Args {
             at_s: None,
             output: output.clone(),
         };
-        join::run(&inputs)?;
+        let words: Vec<String> = logs.iter().map(|log| argument(log)).collect();
+        let line = ["join", &words.join(" "), "--plan", &argument(plan), "-o", &argument(&output)];
+        let step = format!(
+            "the recording is whole, but without its plan; `{}` joins them, with the option that is named below",
+            command(&line)
+        );
+        join::run(&inputs).map_err(|error| CliError::step(step)(error.into()))?;
         Ok(output)
     }
 }

@@ -100,9 +100,9 @@ pub(super) const DESCRIPTION: &str = "metadata.yaml";
 
 const LIST: &str = "relative_file_paths";
 
-/// Orders `run_2` before `run_10`.
+/// Orders `run_2` before `run_10`, and `run` before its next part, `run-2`.
 fn natural_key(path: &Path) -> Vec<(u64, String)> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut key = Vec::new();
     let mut rest = name.as_str();
     while !rest.is_empty() {
@@ -126,6 +126,9 @@ mod tests {
         let mut names: Vec<PathBuf> = ["run_10.mcap", "run_2.mcap", "run_1.mcap"].map(PathBuf::from).to_vec();
         names.sort_by_key(|path| natural_key(path));
         assert_eq!(names, ["run_1.mcap", "run_2.mcap", "run_10.mcap"].map(PathBuf::from));
+        let mut names: Vec<PathBuf> = ["run-10.mcap", "run-2.mcap", "run.mcap"].map(PathBuf::from).to_vec();
+        names.sort_by_key(|path| natural_key(path));
+        assert_eq!(names, ["run.mcap", "run-2.mcap", "run-10.mcap"].map(PathBuf::from));
     }
 
     #[test]

@@ -98,6 +98,12 @@ pub enum LogError {
          JOINT=COLUMN,... --measured JOINT=COLUMN,...`"
     )]
     NoCommonJoint { planned: String, measured: String, given: String },
+    /// Poses of a tool where joints are asked for.
+    #[error(
+        "{topic} holds poses of a tool, and the log no angles of joints: what is fitted and sent is of joints; `hydrotrace report` compares \
+         poses, too"
+    )]
+    PosesAlone { topic: String },
     /// Plan and measurement are of different times.
     #[error(
         "the plan covers {:.2} to {:.2} s, the measurement {:.2} to {:.2} s: they have no time in common; {}",

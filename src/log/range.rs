@@ -26,7 +26,7 @@ impl TimeRange {
     }
 
     /// Whether it has an end.
-    pub(super) fn cuts(self) -> bool {
+    pub fn cuts(self) -> bool {
         self != Self::default()
     }
 

@@ -7,7 +7,22 @@ use super::{
     metric::{lengths_as_angles, position},
     next,
 };
-use crate::{series::JointKind, workflow::join::Joined};
+use crate::{
+    series::JointKind,
+    workflow::join::{Gathered, Joined},
+};
+
+/// The files of a run as one log.
+pub(crate) fn gathered(gathered: &Gathered, output: &Path) -> Document {
+    let Gathered { files, messages, duration_s, remarks, .. } = gathered;
+    let written = format!(
+        "{messages} messages of {} written to {}: all that they hold, {duration_s:.2} s.",
+        counted(*files, "file"),
+        output.display()
+    );
+    let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)]);
+    Document::default().with(next::report(section, &[output])).remarked(remarks)
+}
 
 /// As sentences.
 pub(crate) fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {

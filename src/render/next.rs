@@ -139,6 +139,19 @@ fn unused(name: &str, from: usize, logs: &[PathBuf], next: &str) -> String {
     (from..=from + logs.len() + 1).map(numbered).find(|file| !taken(file)).unwrap_or_default()
 }
 
+/// A run as one argument, and the line that makes one log of its files where they are several: most verbs take each for a run
+/// of its own.
+pub(super) fn as_one(files: &[PathBuf]) -> (Option<String>, String) {
+    if let [one] = files {
+        return (None, argument(one));
+    }
+    let names: Vec<String> = files.iter().map(argument).collect();
+    let taken = |name: &&str| files.iter().any(|file| file.file_name().is_some_and(|file| *file == **name));
+    let one = ["whole.mcap", "run.mcap", "joined.mcap"].into_iter().find(|name| !taken(name));
+    let one = one.unwrap_or("whole-run.mcap");
+    (Some(command(&["join", &names.join(" "), "-o", one])), one.to_owned())
+}
+
 /// After a run was written, or the parts of one.
 pub(super) fn report(section: Section, parts: &[impl AsRef<Path>]) -> Section {
     let parts: Vec<String> = parts.iter().map(argument).collect();

@@ -202,7 +202,7 @@ impl Track {
 
     /// As [`Track::at`], for a caller that walks forward in time: `cursor` is left at the last
     /// sample not after `t_s` and makes the next look-up cheap.
-    pub(super) fn at_after(&self, cursor: &mut usize, t_s: f64) -> Option<State> {
+    pub(crate) fn at_after(&self, cursor: &mut usize, t_s: f64) -> Option<State> {
         let i = match self.signal.place(cursor, t_s)? {
             Place::At(i) => return Some(self.knot(i)),
             Place::After(i) => i,

@@ -8,6 +8,7 @@ use super::{
     Quantity, Role,
     letter::{Lettered, lettered},
     name::{NAMELESS, joint_name},
+    object_number::without_object_number,
     scale::{in_header, is_unclear, unit_alone, unit_named},
     typed::without_type,
     unit::{ANOTHER, METRE, Measure, UNITLESS, Unit, split_suffix},
@@ -55,7 +56,7 @@ const TIMES: &str = "t X_Value ts s sec secs seconds ms millis milliseconds micr
 
 /// Reads a header; `below` is the cell of a row of units.
 pub(super) fn label(header: &str, below: Option<&str>) -> Label {
-    let header = header.trim();
+    let header = &*without_object_number(header.trim());
     // `rostopic echo -p` puts it before the path of every field.
     let header = without_type(header.strip_prefix("field.").unwrap_or(header));
     let indexed = unit_before_index(header);

@@ -148,6 +148,7 @@ pub(super) fn lay_out(
         );
         remarks.add(Code::NotSupported, left.len() as u64, message);
     }
+    without_axes(head, labels, |column| taken(column) || explicit.contains(column), remarks);
     if drafts.iter().all(|draft| !draft.stated) {
         without_lengths(head, labels, |column| taken(column) || explicit.contains(column), remarks);
     }
@@ -173,6 +174,35 @@ fn without_lengths(head: &Head, labels: &[Label], taken: impl Fn(&usize) -> bool
         label.unit.map_or("mm", |unit| unit.name)
     );
     remarks.add(Code::Guessed, left().count() as u64, message);
+}
+
+/// Axes of a machine in capitals, set and actual, are left out beside joints if their headers say no unit: what is left out is said.
+/// In small letters they are places of a tool.
+fn without_axes(head: &Head, labels: &[Label], taken: impl Fn(&usize) -> bool, remarks: &mut Remarks) {
+    let is_axis = |label: &Label| {
+        let upper = label.joint.chars().all(char::is_uppercase);
+        !label.is_joint && is_place(&label.joint) && upper && label.quantity != Some(Quantity::Velocity)
+    };
+    let left = || (0..labels.len()).filter(|column| is_axis(&labels[*column]) && !taken(column));
+    let of = |key: &str, role: Role| {
+        left().find(|column| labels[*column].key == key && labels[*column].role == Some(role))
+    };
+    let pair = |column: usize| {
+        let label = &labels[column];
+        let planned = label.role == Some(Role::Planned);
+        Some((label, column, of(&label.key, Role::Measured).filter(|_| planned)?))
+    };
+    let pairs: Vec<(&Label, usize, usize)> = left().filter_map(pair).collect();
+    let Some((_, planned, measured)) = pairs.first() else { return };
+    let slides: Vec<String> = pairs.iter().map(|(label, ..)| format!("{}=mm", label.joint)).collect();
+    let message = format!(
+        "columns of axes that say no unit, such as {:?} and {:?}, left out; `hydrotrace import` takes them with --slides {} if \
+         they are in mm",
+        head.names[*planned],
+        head.names[*measured],
+        slides.join(",")
+    );
+    remarks.add(Code::Guessed, 2 * pairs.len() as u64, message);
 }
 
 fn measures(label: &Label, measure: Measure) -> bool {
@@ -272,7 +302,7 @@ fn joints(
             }
             if commanded {
                 let message = "no column looks like a plan, only like the command: a report gives the error against \
-                               what was sent, not against what was wanted; `hydrotrace join LOG --plan next.mcap` \
+                               what was sent, not against what was wanted; `hydrotrace join LOG --plan next.mcap -o run.mcap` \
                                puts the plan beside it, or name its columns with --planned JOINT=COLUMN,...";
                 remarks.add(Code::PlanIsCommand, found.len() as u64, message);
             }

@@ -42,6 +42,7 @@ mod map;
 mod marks;
 mod name;
 mod number;
+mod object_number;
 mod objects;
 mod offered;
 mod only;
@@ -261,6 +262,7 @@ impl Form {
         let mut labels: Vec<label::Label> =
             names.map(|(column, name)| label::label(name, below(column))).collect();
         settle::settle(&mut labels);
+        settle::take_slides(&mut labels, &options.slides);
         settle::leave_out_orientation(&mut labels, &column::named(options, &head.names), remarks);
         let by_name = !options.as_plan && pairing::names_a_plan(name);
         let mut options = CsvOptions { as_plan: options.as_plan || by_name, ..options.clone() };

@@ -1,7 +1,7 @@
 //! What a caller may say of a table in which no column looks like a joint's angle, though some come in pairs.
 
 use super::{
-    Role,
+    Quantity, Role,
     word::{Meaning, words},
 };
 use crate::text::shell_word;
@@ -40,9 +40,17 @@ fn of_column(name: &String) -> Option<(Role, String, &String)> {
     let role = words
         .iter()
         .find_map(|word| if let Meaning::Role(role) = word.meaning { Some(role) } else { None })?;
+    let velocity = Meaning::Quantity(Quantity::Velocity);
+    let other = words.iter().any(|word| word.meaning == velocity || names_another_quantity(word.text));
     let left = words.iter().filter(|word| !matches!(word.meaning, Meaning::Role(_) | Meaning::Quantity(_)));
     let key = left.map(|word| word.text.to_lowercase()).collect::<Vec<_>>().join("_");
-    (!key.is_empty() && !name.contains([',', '='])).then_some((role, key, name))
+    (!key.is_empty() && !other && !name.contains([',', '='])).then_some((role, key, name))
+}
+
+/// Whether a word is of what is no position.
+fn names_another_quantity(word: &str) -> bool {
+    const OTHERS: &str = "acc accel acceleration jerk torque force current pressure temp temperature power";
+    OTHERS.split(' ').any(|other| word.eq_ignore_ascii_case(other))
 }
 
 #[cfg(test)]
@@ -62,5 +70,8 @@ mod tests {
         assert!(of(&["X_RIst", "X_RSol"]).unwrap().contains("--planned x=X_RSol --measured x=X_RIst"));
         assert_eq!(of(&["step", "reference", "feedback", "err"]), None);
         assert_eq!(of(&["a", "b"]), None);
+        let kinds = ["Position", "Velocity", "Acceleration"];
+        let axes = ["Set", "Act"].map(|side| kinds.map(|kind| format!("X_{side}{kind}"))).concat();
+        assert!(offered(&axes).unwrap().contains("--planned x=X_SetPosition --measured x=X_ActPosition"));
     }
 }

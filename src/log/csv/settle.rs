@@ -2,7 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Quantity, Role, label::Label, letter::Lettered, unit::METRE};
+use super::{
+    Quantity, Role,
+    label::Label,
+    letter::Lettered,
+    unit::{METRE, Measure},
+};
 use crate::remark::{Code, Remarks};
 
 /// Letters behind a quantity that are gains of a controller where all three come: `position_p`.
@@ -33,6 +38,21 @@ pub(super) fn leave_out_orientation(labels: &mut [Label], named: &BTreeSet<usize
                    name them with --planned JOINT=COLUMN,... and --measured JOINT=COLUMN,...";
     let left = angles.iter().filter(|at| !named.contains(at)).count();
     remarks.add(Code::Guessed, left as u64, message);
+}
+
+/// Positions of what the caller says to slide are of a joint, whatever its name: `X_set` and `X_act`.
+pub(super) fn take_slides<T>(labels: &mut [Label], slides: &BTreeMap<String, T>) {
+    let own: BTreeSet<String> = labels.iter().map(|label| label.joint.clone()).collect();
+    // A name as it stands is that of its own case alone.
+    let named = |name: &String, label: &Label| {
+        if own.contains(name) { *name == label.joint } else { name.to_lowercase() == label.key }
+    };
+    let called = |label: &Label| slides.keys().any(|name| named(name, label));
+    let long = |label: &Label| label.unit.is_none_or(|unit| unit.measure == Measure::Length);
+    for label in labels.iter_mut().filter(|label| called(label) && label.role.is_some() && long(label)) {
+        let position = label.quantity.is_none_or(|quantity| quantity == Quantity::Position);
+        label.is_joint |= position && !label.is_time;
+    }
 }
 
 /// Settles what only all headers together tell: that `q_d_1` is the plan of `q_1`, and that `J1_planned_rad` and

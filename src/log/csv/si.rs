@@ -171,6 +171,8 @@ fn angle(
         Quantity::Velocity => (Measure::AngularSpeed, "speed of a joint"),
     };
     let named = options.columns.contains_key(&(one.role, one.quantity));
+    let reach = cells.columns.get(&one.column).map_or(0.0, super::read::Column::reach);
+    let too_far = one.quantity == Quantity::Position && reach > FARTHEST_RAD;
     let (angle, from) = match (label.and_then(|label| label.unit), fallback) {
         (Some(unit), _) if unit.measure == wanted => return Ok((unit, "file")),
         // The caller names the column and the unit: that holds against a header.
@@ -179,10 +181,10 @@ fn angle(
             let column = head.names[one.column].clone();
             return Err(CsvError::WrongUnit { column, unit: unit.name.to_owned(), expected });
         }
-        (None, Some((unit, from))) => (unit, from),
-        (None, None) => {
-            let reach = cells.columns.get(&one.column).map_or(0.0, super::read::Column::reach);
-            if one.quantity == Quantity::Position && reach > FARTHEST_RAD {
+        // What a kind of file is known to use may have been converted since.
+        (None, Some((unit, from))) if from != KNOWN || !too_far => (unit, from),
+        (None, _) => {
+            if too_far {
                 let column = head.names[one.column].clone();
                 let counts = reach > FARTHEST_DEG;
                 let says = says_no_unit(label);
@@ -262,6 +264,9 @@ fn by_partner(
     }
 }
 
+/// A kind of file whose unit is known.
+const KNOWN: &str = "RTDE";
+
 /// What columns are in that say nothing: what the caller says, what the kind of file is known to
 /// use, or what all other columns say.
 fn fallback(
@@ -276,7 +281,7 @@ fn fallback(
     }
     let has = |name: &str| head.names.iter().any(|other| other == name);
     if has("target_q_0") && has("actual_q_0") {
-        return Some((RADIAN, "RTDE"));
+        return Some((RADIAN, KNOWN));
     }
     let mut stated = stated.flatten();
     let first = stated.next()?;

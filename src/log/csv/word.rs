@@ -16,11 +16,11 @@ pub(super) enum Meaning {
     Name,
 }
 
-const PLANNED: &str = "target targets tgt ziel vorgabe demanded requested planned plan desired des reference references ref setpoint setpoints ipo set sp rsol soll sollwert goal nominal nom demand \
+const PLANNED: &str = "expected ideal leader target targets tgt ziel vorgabe demanded requested planned plan desired des reference references ref setpoint setpoints ipo set sp rsol soll sollwert goal nominal nom demand \
     wanted consigne trajectory traj fuehrung aspos consigna referencia riferimento alvo ohje ohjearvo börvärde zadana zadane \
     规划 规划值 计划 期望 期望值 目标 目标值 设定 设定值 给定 给定值 参考 参考值 目標 目標値 設定値 목표 목표값 \
     задание задано заданное заданный уставка план";
-const MEASURED: &str = "actual act rückmeldung rueckmeldung fdbk estimated measured meas feedback fb fbk process present observation ist istwert real sensor encoder enc pv measurement measurements reached rist \
+const MEASURED: &str = "observed follower actual act rückmeldung rueckmeldung fdbk estimated measured meas feedback fb fbk process present observation ist istwert real sensor encoder enc pv measurement measurements reached rist \
     mess messwert ms aipos mesure mesuré mesurée mesuree réel réelle reel reelle medido medida misurato misurata attuale mitattu oloarvo ärvärde \
     zmierzona 实际 实际值 实测 实测值 测量 测量值 反馈 反馈值 当前 当前值 実際 実際値 実測 実測値 現在 現在値 실제 실제값 측정 측정값 \
     факт фактический фактическое текущее измерено измеренное измеренный";

@@ -86,6 +86,18 @@ pub fn read_messages(path: &Path, options: &CsvOptions) -> Result<CsvRun, LogErr
         .map_err(fault)
 }
 
+/// Whether all messages that could be read by words are of a type whose angles are radians by its definition.
+pub(super) fn in_radians(log: &ScannedLog<'_>) -> bool {
+    log.files.iter().all(|file| {
+        let Definitions { schemas, channels } = Definitions::gather(&file.layout, file.source, false);
+        let name = |id: u16| schemas.get(&id).map_or("", |schema| schema.name.as_str());
+        let joints = |id: u16| plain_name(&name(id).replace('.', "/")) == KNOWN[0];
+        let read =
+            |channel: &ChannelRecord| reader(schemas.get(&channel.schema_id), channel, false).is_some();
+        channels.values().filter(|channel| !joints(channel.schema_id)).all(|channel| !read(channel))
+    })
+}
+
 fn rows(log: &ScannedLog<'_>, lone: bool, stamped: bool) -> Option<Rows> {
     let mut rows = Rows::default();
     rows.lone = lone;

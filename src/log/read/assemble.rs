@@ -117,8 +117,8 @@ pub(super) fn assemble(
         repeated::of_command(&mut command.series, &mut remarks);
         held::of_command(command, sides[1].1, &mut remarks);
     }
-    spoilt::of_sides(sides[0].1, sides[1].1, command.as_ref(), &mut remarks);
-    quality::of_pairs(sides[0].1, sides[1].1, options, &mut remarks);
+    spoilt::of_sides([sides[0].1, sides[1].1], command.as_ref(), options.one_clock, &mut remarks);
+    quality::of_pairs([sides[0].1, sides[1].1], options, assembly.kinds.stated(), &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);
     let mut source = assembly.source_info(choice, base_why, delays_ns, [&measured, &planned]);
@@ -253,7 +253,9 @@ impl Assembly {
             return Vec::new();
         };
         let last = !pending.iter().any(|c| c.source == candidate.source && c.field == candidate.field);
-        samples(table, Reading { field, positions, last }, axis, &name, remarks)
+        let kinds = &self.kinds;
+        let unit = |joint: &str| kinds.unit_m(candidate.source, joint).unwrap_or(1.0);
+        samples(table, Reading { field, unit: positions.then_some(unit), last }, axis, &name, remarks)
     }
 
     /// The tracks of the chosen fields; of joints that several have, those of the first. Trajectories

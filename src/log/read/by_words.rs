@@ -47,7 +47,9 @@ pub(super) fn recording(
     }
     match run(false) {
         Some(Ok(run)) => recorded(log, &run, false, &options).ok_or(error),
-        Some(Err(source @ (CsvError::AngleUnit { .. } | CsvError::Counts { .. }))) => {
+        Some(Err(source @ (CsvError::AngleUnit { .. } | CsvError::Counts { .. })))
+            if !flat::in_radians(log) =>
+        {
             let (path, source) = (first.path.to_owned(), Box::new(source));
             Err(LogError::Table { path, source, given: Given::of(&options) })
         }

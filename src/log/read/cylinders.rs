@@ -113,8 +113,13 @@ impl Kinds {
         if slides || self.sliding.contains(joint) { JointKind::Slides } else { JointKind::Turns }
     }
 
+    /// Joints of a table whose header says the unit.
+    pub(super) fn stated(&self) -> &BTreeSet<String> {
+        &self.stated
+    }
+
     /// The unit that the caller says of lengths of a joint of a source, m.
-    fn unit_m(&self, source: usize, joint: &str) -> Option<f64> {
+    pub(super) fn unit_m(&self, source: usize, joint: &str) -> Option<f64> {
         let named = || self.slides.get(self.renamed.get(&(source, joint.to_owned()))?);
         // What our logs say to slide, they have in metres.
         let given = self.slides.get(joint).or_else(named).filter(|_| !self.in_metres.contains(joint));

@@ -1,6 +1,9 @@
 //! What an imported log was read from.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -105,11 +108,16 @@ impl<'a> Imported<'a> {
         format!("{} of {}{unused}", used.join(", "), self.file)
     }
 
+    /// Where the table is, of one that was read with a log or from it: beside it, if it is there.
+    pub(super) fn place(&self, log: &Path) -> PathBuf {
+        let beside = log.with_file_name(self.file);
+        if beside.exists() { beside } else { PathBuf::from(self.file) }
+    }
+
     /// The line that imports it again with what is given now, and with columns of an option that lacks them, which are to
     /// be filled in. `path` is where the log was read from: the table itself, if it has its name.
     pub(super) fn import_line(&self, path: &Path, lacking: Option<&str>, given: &Given) -> String {
-        let own = path.file_name().is_some_and(|name| name == self.file);
-        let file = if own { path } else { Path::new(self.file) };
+        let file = self.place(path);
         let columns =
             self.positions().map(|(joint, _)| format!("{joint}=COLUMN")).collect::<Vec<_>>().join(",");
         let mut words = self.given_but(|option| given.has(option) || lacking == Some(option));
@@ -117,7 +125,7 @@ impl<'a> Imported<'a> {
             given.words().filter(|word| lacking.is_none_or(|option| !word.starts_with(option))).cloned(),
         );
         words.extend(lacking.map(|option| format!("{option} {}", shell_word(&columns))));
-        line(file, &words.iter().map(String::as_str).collect::<Vec<_>>(), path)
+        line(&file, &words.iter().map(String::as_str).collect::<Vec<_>>(), path)
     }
 
     /// The options that it was imported with, but for some.

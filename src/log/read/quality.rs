@@ -1,6 +1,6 @@
 //! Remarks on data that look wrong.
 
-use std::f64::consts::TAU;
+use std::{collections::BTreeSet, f64::consts::TAU};
 
 use super::turns::turns;
 use crate::{
@@ -160,12 +160,20 @@ fn scaling(factors: &[(f64, u64)]) -> (u64, u64) {
     (samples(&|factor| factor <= 0.0), samples(&|factor| factor > 0.0 && factor < full - 1e-6))
 }
 
-pub(super) fn of_pairs(planned: &Series, measured: &Series, options: &ReadOptions, remarks: &mut Remarks) {
+/// Remarks on plan and measurement, joint by joint.
+///
+/// `stated` are joints of a table whose header says the unit: an option would convert them a second time.
+pub(super) fn of_pairs(
+    [planned, measured]: [&Series; 2],
+    options: &ReadOptions,
+    stated: &BTreeSet<String>,
+    remarks: &mut Remarks,
+) {
     for track in &planned.tracks {
         of_plan(track, remarks);
         match measured.track(track.name()) {
             None => unmeasured(track.name(), remarks),
-            Some(measured) => of_pair(track, measured, options, remarks),
+            Some(measured) => of_pair(track, measured, (options, stated.contains(track.name())), remarks),
         }
     }
 }
@@ -241,9 +249,14 @@ const RATIO_TOLERANCE: f64 = 0.15;
 /// Joints with end stops span less.
 const TURN_AND_A_HALF_RAD: f64 = 1.5 * TAU;
 
-fn of_pair(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &mut Remarks) {
+fn of_pair(
+    planned: &Track,
+    measured: &Track,
+    (options, stated): (&ReadOptions, bool),
+    remarks: &mut Remarks,
+) {
     if planned.turns() {
-        of_units(planned, measured, options, remarks);
+        of_units(planned, measured, (options, stated), remarks);
     }
     // Full turns are told of elsewhere.
     if turns(measured) == 0 {
@@ -268,33 +281,47 @@ pub(super) fn looks_like_degrees(ratio: f64) -> bool {
 }
 
 /// Remarks on angles that look like degrees.
-fn of_units(planned: &Track, measured: &Track, options: &ReadOptions, remarks: &mut Remarks) {
+fn of_units(
+    planned: &Track,
+    measured: &Track,
+    (options, stated): (&ReadOptions, bool),
+    remarks: &mut Remarks,
+) {
     let (plan_rad, angle_rad) = (span_rad(planned.position()), span_rad(measured.position()));
     let name = planned.name();
-    if looks_like_degrees(angle_rad / plan_rad) {
-        let cause = if options.planned_in_degrees {
-            "--planned-degrees does that to a plan in radians: drop it"
-        } else {
-            "measured in degrees? then say --measured-degrees, or put the header right that states another unit"
+    let header = "the header of one of the two says a wrong unit: put that right".to_owned();
+    let cause = |dropped: bool, option: &str, other: &str, of: &str| match (dropped, stated) {
+        (true, _) => format!("{option} does that to {of} in radians: drop it"),
+        (false, true) => header.clone(),
+        (false, false) => format!("{other}in degrees? then say {option}"),
+    };
+    let message = if looks_like_degrees(angle_rad / plan_rad) {
+        let cause = match options.planned_in_degrees {
+            true => cause(true, "--planned-degrees", "", "a plan"),
+            false => cause(false, "--measured-degrees", "measured ", ""),
         };
-        let message = format!("{name} spans 57.3 times its plan: {cause}");
-        remarks.add(Code::LooksLikeDegrees, 1, message);
+        format!("{name} spans 57.3 times its plan: {cause}")
     } else if looks_like_degrees(plan_rad / angle_rad) {
-        let cause = if options.measured_in_degrees {
-            "--measured-degrees does that to a measurement in radians: drop it"
-        } else {
-            "in degrees? then say --planned-degrees, or put the header right that states another unit"
+        let cause = match options.measured_in_degrees {
+            true => cause(true, "--measured-degrees", "", "a measurement"),
+            false => cause(false, "--planned-degrees", "", ""),
         };
-        let message = format!("the plan of {name} spans 57.3 times the measurement: {cause}");
-        remarks.add(Code::LooksLikeDegrees, 1, message);
+        format!("the plan of {name} spans 57.3 times the measurement: {cause}")
     } else if plan_rad.min(angle_rad) > TURN_AND_A_HALF_RAD && !options.continuous.iter().any(|c| c == name) {
-        let message = format!(
-            "{name} spans {angle_rad:.1} rad in plan and measurement: both in degrees? then say \
-             --planned-degrees --measured-degrees; or, if it slides, --slides {name}=mm (of a table that was imported, import it \
-             so); or, if it has no end stops, --continuous {name}"
-        );
-        remarks.add(Code::LooksLikeDegrees, 1, message);
-    }
+        let cause = if stated {
+            "if it turns as far, as of a joint without end stops,".to_owned()
+        } else {
+            format!(
+                "both in degrees? then say --planned-degrees --measured-degrees; or, if it slides, --slides {name}=mm (of a table \
+                 that was imported, import it so); or, if it has no end stops,"
+            )
+        };
+        let wrong = if stated { "; else the unit in its header is wrong" } else { "" };
+        format!("{name} spans {angle_rad:.1} rad in plan and measurement: {cause} --continuous {name}{wrong}")
+    } else {
+        return;
+    };
+    remarks.add(Code::LooksLikeDegrees, 1, message);
 }
 
 /// So many samples tell a range.
@@ -320,7 +347,7 @@ mod tests {
     fn codes(planned: Track, measured: Track) -> Vec<Code> {
         let mut remarks = Remarks::default();
         let (planned, measured) = (Series { tracks: vec![planned] }, Series { tracks: vec![measured] });
-        of_pairs(&planned, &measured, &ReadOptions::default(), &mut remarks);
+        of_pairs([&planned, &measured], &ReadOptions::default(), &BTreeSet::new(), &mut remarks);
         remarks.as_slice().iter().map(|r| r.code).collect()
     }
 

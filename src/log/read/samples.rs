@@ -53,12 +53,13 @@ impl Axis {
         self.rows.get(i).copied().unwrap_or(i)
     }
 
-    /// Whether the values of a column are finite, and none of them a spike or lost if they are positions.
-    fn is_sound(&self, values: &[f64], positions: bool) -> bool {
-        let (n, t_s, at) = (values.len(), |i: usize| self.t_s[i], |i: usize| values[i]);
+    /// Whether the values of a column are finite, and none of them a spike or lost if they are positions in such a unit.
+    fn is_sound(&self, values: &[f64], positions: Option<f64>) -> bool {
+        let Some(unit) = positions else { return all_finite(values) };
+        let (n, t_s, at) = (values.len(), |i: usize| self.t_s[i], |i: usize| unit * values[i]);
         let spiked = || (0..n).any(|k| is_spike(k, n, t_s, at) || may_be_spike(k, n, t_s, at));
-        let calm = || is_calm(values, self.shortest_s) || all_finite(values) && !spiked();
-        if positions { !may_be_lost(values) && calm() } else { all_finite(values) }
+        let calm = || is_calm(values, self.shortest_s, unit) || all_finite(values) && !spiked();
+        !may_be_lost(values) && calm()
     }
 
     /// The axis without the samples that are missing in a column: times, cuts and jumps.
@@ -99,10 +100,11 @@ impl Samples {
 
 /// The field to read of a table, and how.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Reading {
+pub(super) struct Reading<F> {
     pub(super) field: usize,
-    /// Whether values are positions of joints, so that impossible ones are dropped.
-    pub(super) positions: bool,
+    /// The unit, m, of a joint whose positions these are if the caller gave one, else 1; `None` where values are no positions.
+    /// Impossible positions are dropped.
+    pub(super) unit: Option<F>,
     /// Whether this is the last use of the field, so that its samples may be moved out of the table.
     pub(super) last: bool,
 }
@@ -110,7 +112,7 @@ pub(super) struct Reading {
 /// The samples of a table's field, by joint.
 pub(super) fn samples(
     table: &mut Table,
-    Reading { field, positions, last }: Reading,
+    Reading { field, unit, last }: Reading<impl Fn(&str) -> f64>,
     axis: &Axis,
     topic: &str,
     remarks: &mut Remarks,
@@ -118,11 +120,12 @@ pub(super) fn samples(
     let mut found = Vec::new();
     let mut gap = Gaps::default();
     let (mut spikes, mut lost) = (Dropped::default(), Dropped::default());
-    let velocity_field = table.fields[field].velocity.filter(|_| positions);
+    let velocity_field = table.fields[field].velocity.filter(|_| unit.is_some());
     for (joint, name) in table.joints.clone().into_iter().enumerate() {
         let mut column =
             |field| if last { table.take_column(field, joint) } else { table.column(field, joint).to_vec() };
         let (values, speed) = (column(field), velocity_field.map(column).unwrap_or_default());
+        let positions = unit.as_ref().map(|unit| unit(&name));
         let sound = |_: &&Instants| values.len() == axis.t_s.len() && axis.is_sound(&values, positions);
         let (instants, values, velocity) = if let Some(as_read) = axis.as_read.as_ref().filter(sound) {
             gap.note(&axis.t_s, &axis.cuts, &axis.jumps);
@@ -132,10 +135,12 @@ pub(super) fn samples(
             let mut kept: Vec<usize> = (0..axis.t_s.len()).filter(|&i| at(i).is_finite()).collect();
             // Far from the epoch neighbouring nanoseconds are the same second.
             kept.dedup_by(|later, earlier| axis.t_s[*later] <= axis.t_s[*earlier]);
-            if positions {
+            if let Some(unit) = positions {
                 // A zero is a reading that was lost before it is a jump.
-                lost.note((&name, &axis.t_s), &mut kept, |kept| drop_lost(kept, &axis.t_s, at));
-                spikes.note((&name, &axis.t_s), &mut kept, |kept| drop_spikes(kept, &axis.t_s, at));
+                lost.note((&name, &axis.t_s), &mut kept, |kept| drop_lost(kept, &axis.t_s, |i| unit * at(i)));
+                spikes.note((&name, &axis.t_s), &mut kept, |kept| {
+                    drop_spikes(kept, &axis.t_s, |i| unit * at(i))
+                });
             }
             let (t_s, cuts, jumps) = axis.kept(&kept);
             gap.note(&t_s, &cuts, &jumps);
@@ -236,9 +241,9 @@ fn may_be_spike(k: usize, n: usize, t_s: impl Fn(usize) -> f64, at: impl Fn(usiz
 
 /// Whether no value is a spike or no number because none is large and no step is: a quick look that spares the closer
 /// one. It has no branch on any value, so that the compiler takes several at once.
-fn is_calm(values: &[f64], shortest_s: f64) -> bool {
-    let step = LESS_FAR.min(FASTEST * shortest_s);
-    let near = |value: f64| value.abs() <= LARGEST;
+fn is_calm(values: &[f64], shortest_s: f64, unit: f64) -> bool {
+    let (step, largest) = (LESS_FAR.min(FASTEST * shortest_s) / unit, LARGEST / unit);
+    let near = |value: f64| value.abs() <= largest;
     let pairs = values.iter().zip(values.get(1..).unwrap_or_default());
     pairs.fold(values.last().is_none_or(|last| near(*last)), |calm, (here, next)| {
         calm & near(*here) & ((next - here).abs() <= step)

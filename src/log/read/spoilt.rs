@@ -9,9 +9,9 @@ use crate::{
 /// Remarks the first that holds: a stop of a run that was in time, another time, a stop of one that was not. What was
 /// sent may run ahead of the plan, and the joints with it: they are at another time if they are so by the command, too.
 pub(super) fn of_sides(
-    planned: &Series,
-    measured: &Series,
+    [planned, measured]: [&Series; 2],
     command: Option<&Command>,
+    one_clock: bool,
     remarks: &mut Remarks,
 ) {
     let mut stops = stopped::stops(planned, measured);
@@ -25,15 +25,21 @@ pub(super) fn of_sides(
     let stop = |stop: &stopped::Stop| (Code::Stopped, stop.message.clone());
     let in_time = stops.iter().find(|stop| stop.in_time).map(stop);
     let found = in_time
-        .or_else(|| other_time(planned, measured, command).map(|message| (Code::OtherTime, message)))
+        .or_else(|| {
+            other_time([planned, measured], command, one_clock).map(|message| (Code::OtherTime, message))
+        })
         .or_else(|| stops.first().map(stop));
     if let Some((code, message)) = found {
         remarks.add(code, 1, message);
     }
 }
 
-fn other_time(planned: &Series, measured: &Series, command: Option<&Command>) -> Option<String> {
-    let message = other_time::message(planned, measured)?;
-    let by_command = |command: &Command| other_time::message(&command.series, measured).is_some();
+fn other_time(
+    [planned, measured]: [&Series; 2],
+    command: Option<&Command>,
+    one_clock: bool,
+) -> Option<String> {
+    let message = other_time::message(planned, measured, one_clock)?;
+    let by_command = |command: &Command| other_time::message(&command.series, measured, one_clock).is_some();
     command.is_none_or(by_command).then_some(message)
 }

@@ -1,6 +1,6 @@
 //! Lists the topics of a log.
 
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, path::Path};
 
 use super::{
     content::{Content, Extracted, Source},
@@ -16,7 +16,7 @@ use crate::{
         source::{Form, Table},
     },
     suggest::nearest,
-    text::shell_word,
+    text::shell_argument,
     units::NS_PER_S,
 };
 
@@ -127,6 +127,11 @@ fn topic_info<'a>(
     info
 }
 
+/// What makes one log of two.
+fn in_another(log: &Path) -> String {
+    format!("`hydrotrace join {} OTHER -o whole.mcap` makes one log of both", shell_argument(log))
+}
+
 /// What a log lacks, and how to say where it is: of a table by its columns, which is for `import`.
 pub(super) fn missing(
     extracted: &Extracted,
@@ -140,8 +145,11 @@ pub(super) fn missing(
         }
         Some(table) => {
             let line = table.import_line(&extracted.path, Some(flag), &Given::of(options));
-            let own = "; or, if they are in a file of their own with the same zero of time, give both files";
-            (table.columns(), line + own)
+            let own = format!(
+                "; or, if they are in a file of their own with the same zero of time, {}",
+                in_another(&table.place(&extracted.path))
+            );
+            (table.columns(), line + &own)
         }
         // Plan and measurement may be in a table each.
         None if extracted.tables.len() > 1 && !flag.contains(' ') => {
@@ -154,8 +162,8 @@ pub(super) fn missing(
                 [one, other] if missing == "planned" => format!(
                     "; or, if all of one of them is the plan, `hydrotrace join {} --plan {} --at 0 -o run.mcap`, or the other way \
                      round",
-                    shell_word(one.file),
-                    shell_word(other.file)
+                    shell_argument(one.place(&extracted.path)),
+                    shell_argument(other.place(&extracted.path))
                 ),
                 _ => String::new(),
             };
@@ -164,7 +172,11 @@ pub(super) fn missing(
             );
             (tables.iter().map(Imported::columns).collect::<Vec<_>>().join("; "), fix)
         }
-        None => (present(extracted), format!("{flag} TOPIC[:FIELD]")),
+        None if flag.contains(' ') => (present(extracted), format!("{flag} TOPIC[:FIELD]")),
+        None => {
+            let own = format!("; or, if they are in a log of their own, {}", in_another(&extracted.path));
+            (present(extracted), format!("{flag} TOPIC[:FIELD]{own}"))
+        }
     };
     LogError::Missing { missing, present, fix }
 }

@@ -35,6 +35,16 @@ macro_rules! from {
 
 from!(AtomicError, WriteError, mcap::McapError, std::io::Error);
 
+/// The writer of a log that is a copy of others.
+pub(super) fn writer<W: Write + Seek>(output: W, profile: &str) -> Result<mcap::Writer<W>, mcap::McapError> {
+    mcap::WriteOptions::new()
+        .profile(profile)
+        .library(concat!("hydrotrace ", env!("CARGO_PKG_VERSION")))
+        .compression(Some(mcap::Compression::Zstd))
+        .compression_threads(0)
+        .create(output)
+}
+
 /// Channels of an old log as the new one numbers them.
 pub(super) struct Copier {
     definitions: Definitions,

@@ -1,6 +1,7 @@
-//! Logs made from logs: the whole messages of a damaged log, and a log with a plan added.
+//! Logs made from logs: the whole messages of a damaged log, and a log with a plan added, and the files of one run.
 
 mod copy;
+mod gather;
 mod join;
 mod recover;
 

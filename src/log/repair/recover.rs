@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use super::copy::{Copier, CopyError, copy_files};
+use super::copy::{Copier, CopyError, copy_files, writer};
 use crate::{
     atomic_file::write_atomically,
     log::{
@@ -85,12 +85,7 @@ fn copy<W: Write + Seek>(
     saved: &mut Recovered,
 ) -> Result<(), CopyError> {
     let layout = &file.layout;
-    let mut writer = mcap::WriteOptions::new()
-        .profile(layout.profile.as_str())
-        .library(concat!("hydrotrace ", env!("CARGO_PKG_VERSION")))
-        .compression(Some(mcap::Compression::Zstd))
-        .compression_threads(0)
-        .create(output)?;
+    let mut writer = writer(output, &layout.profile)?;
     copy_files(&mut writer, file, &[])?;
     let mut copier = Copier::of(file);
     let mut blocks = Blocks::new();

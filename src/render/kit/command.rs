@@ -22,15 +22,23 @@ pub(crate) const READERS: [&str; 9] =
 /// Of these, those on the joints: they hold for the recorder's log, too.
 const OF_JOINTS: [&str; 2] = ["--continuous", "--slides"];
 
+/// Those that leave something out.
+const LEAVE_OUT: [&str; 2] = ["--from ", "--to "];
+
 /// A command with the options on what to read, where its verb takes them.
 pub(crate) fn reading(line: &str, options: &[String]) -> String {
     let verb = line.split(' ').nth(1).unwrap_or_default();
     let of_joints = |option: &&String| OF_JOINTS.iter().any(|one| option.starts_with(one));
     let taken: Vec<&str> = match verb {
-        "join" => options.iter().filter(of_joints).map(String::as_str).collect(),
+        "join" if line.contains(" --plan ") => options.iter().filter(of_joints).map(String::as_str).collect(),
         // A plan of ours, whose topics are not those of the logs.
         "export" if line.contains("--as cylinders") => {
             options.iter().filter(|option| option.starts_with("--hydraulics")).map(String::as_str).collect()
+        }
+        // All of the files is joined.
+        "join" => {
+            let leaves_out = |option: &&String| LEAVE_OUT.iter().any(|one| option.starts_with(one));
+            options.iter().filter(|option| !leaves_out(option)).map(String::as_str).collect()
         }
         _ if READERS.contains(&verb) => options.iter().map(String::as_str).collect(),
         _ => Vec::new(),

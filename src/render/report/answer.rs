@@ -16,6 +16,7 @@ use crate::{
             starts_of,
         },
         metric::position,
+        next::as_one,
     },
     replay::{Replay, Transition},
     workflow::report::{
@@ -44,8 +45,9 @@ pub(crate) fn answer(report: &Report, explain: bool) -> Document {
     facts.extend(whole(replay));
     facts.extend(verdicts(report).iter().map(|verdict| fact("limit", verdict.to_string())));
     facts.extend(doubts(report));
-    let (aim, line) = next(report);
-    let next = Section::plain(Id::NEXT, [Block::from(Sentence::advice(aim)), Block::Command(line)]);
+    let (aim, lines) = next(report);
+    let next =
+        Section::plain(Id::NEXT, [Sentence::advice(aim)]).with_all(lines.into_iter().map(Block::Command));
     let mut document = Document { facts, ..Document::titled(report.logs.join(", ")) }.with(next);
     document.sections.extend(method(report).filter(|_| explain));
     document
@@ -154,38 +156,40 @@ fn doubts(report: &Report) -> Option<Fact> {
     Some(fact("doubt", format!("{} x{}: {}{more}", first.code.name(), first.count, first.message)))
 }
 
-/// The most urgent step as a command, and what it is for.
-fn next(report: &Report) -> (String, String) {
+/// The most urgent step as commands, and what they are for.
+fn next(report: &Report) -> (String, Vec<String>) {
     let names: Vec<String> = report.paths.iter().map(argument).collect();
-    let joined = names.join(" ");
+    let (joined, log) = as_one(&report.paths);
+    let of_one = |line: String| joined.iter().cloned().chain([line]).collect();
+    let reported = || vec![command(&["report", &names.join(" ")])];
     let steps = advice(report);
     let urgent = steps.iter().find(|step| !matches!(step, Advice::SetLimits | Advice::Compare));
     match urgent {
         Some(Advice::ClearDoubts(_)) => {
-            ("To see the doubts about the data, which come first:".to_owned(), command(&["report", &joined]))
+            ("To see the doubts about the data, which come first:".to_owned(), reported())
         }
         Some(Advice::FreeJoint { joint, unanswered, starts, reversals }) => (
             format!(
                 "{joint} leaves {unanswered} of {} unanswered. To see which:",
                 starts_of(*starts, *reversals)
             ),
-            command(&["report", &joined]),
+            reported(),
         ),
         Some(Advice::EaseStarts { fits: true, .. } | Advice::ShiftCommand { fits: true, .. })
             if report.holds_task =>
         {
             let learns = report.promised.is_some();
             let made = "To make a command that compensates what this run shows, at half strength first";
-            (format!("{}:", if learns { LEARNT } else { made }), replanned(&joined, learns))
+            (format!("{}:", if learns { LEARNT } else { made }), of_one(replanned(&log, learns)))
         }
         Some(Advice::EaseStarts { fits: true, .. } | Advice::ShiftCommand { fits: true, .. }) => (
             "To learn lag, dead band and limits of the machine from it:".to_owned(),
-            command(&["fit", &joined, "-o", "limits.toml"]),
+            of_one(command(&["fit", &log, "-o", "limits.toml"])),
         ),
         Some(Advice::RecordStarts) => (
             "To see what the log holds:".to_owned(),
-            command(&["info", names.first().map_or("", String::as_str)]),
+            vec![command(&["info", names.first().map_or("", String::as_str)])],
         ),
-        _ => ("To see every start and joint:".to_owned(), command(&["report", &joined])),
+        _ => ("To see every start and joint:".to_owned(), reported()),
     }
 }

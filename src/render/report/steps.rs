@@ -1,7 +1,10 @@
-//! What to do next: a sentence for each step, and the line to type.
+//! What to do next: a sentence for each step, and what to type.
 
 use crate::{
-    render::kit::{Sentence, argument, command, counted, late, ms, reading, starts_of},
+    render::{
+        kit::{Sentence, argument, command, counted, late, ms, reading, starts_of},
+        next::as_one,
+    },
     series::JointKind,
     workflow::report::{
         Report,
@@ -16,22 +19,35 @@ pub(super) fn steps(report: &Report, read: &[String]) -> Vec<(Sentence, Option<S
         JointKind::Turns => ["--max-transition-peak-deg", "0.5"],
         JointKind::Slides => ["--max-transition-peak-mm", "5"],
     };
-    let logs = report.paths.iter().map(argument).collect::<Vec<_>>().join(" ");
     let learns = report.promised.is_some();
-    let line = |step: &Advice| Some(reading(&line(step, &logs, limit, learns)?, read));
-    advice(report).iter().map(|step| (Sentence::Advice(words(step, limit[0], learns)), line(step))).collect()
+    // Files are joined once, before the first line that needs them so.
+    let mut joins = true;
+    let mut line = |step: &Advice| {
+        let lines = lines(step, report, limit, learns);
+        let from = if joins || lines.len() < 2 { 0 } else { 1 };
+        joins &= lines.len() < 2;
+        let lines: Vec<String> = lines[from..].iter().map(|line| reading(line, read)).collect();
+        (!lines.is_empty()).then(|| lines.join(" && "))
+    };
+    let said = |step: &Advice| Sentence::Advice(words(step, limit[0], learns));
+    advice(report).iter().map(|step| (said(step), line(step))).collect()
 }
 
 /// What to type for a step, if that does it.
-fn line(step: &Advice, logs: &str, limit: [&str; 2], learns: bool) -> Option<String> {
-    Some(match step {
+fn lines(step: &Advice, report: &Report, limit: [&str; 2], learns: bool) -> Vec<String> {
+    let (joined, log) = as_one(&report.paths);
+    let line = match step {
         Advice::ShiftCommand { fits: true, .. } | Advice::EaseStarts { fits: true, .. } => {
-            replanned(logs, learns)
+            replanned(&log, learns)
         }
-        Advice::SetLimits => command(&["report", logs, limit[0], limit[1]]),
-        Advice::Compare => command(&["compare", logs, "NEXT_RUN"]),
-        _ => return None,
-    })
+        Advice::SetLimits => {
+            let logs = report.paths.iter().map(argument).collect::<Vec<_>>().join(" ");
+            return vec![command(&["report", &logs, limit[0], limit[1]])];
+        }
+        Advice::Compare => command(&["compare", &log, "NEXT_RUN"]),
+        _ => return Vec::new(),
+    };
+    joined.into_iter().chain([line]).collect()
 }
 
 /// What makes a command that compensates what these logs show; `learns` says that one was sent already.

@@ -43,9 +43,11 @@ fn source_facts(report: &Report) -> Vec<Fact> {
     let samples = report.alignment.iter().map(|a| a.matched).max().unwrap_or(0);
     let interval_s = report.replay.joints.iter().map(|j| j.sample_interval_s).fold(0.0, f64::max);
     let rate = if interval_s > 0.0 { format!(" at {:.0} Hz", 1.0 / interval_s) } else { String::new() };
+    // A table has no recorder beside the one that stamped it.
     let delay = source
         .recorder_delay_s
-        .filter(|[median_s, most_s]| *most_s >= 1e-3 && median_s.abs() < A_CLOCK_APART_S);
+        .filter(|[median_s, most_s]| *most_s >= 1e-3 && median_s.abs() < A_CLOCK_APART_S)
+        .filter(|_| source.origin.is_none());
     let delay = delay.map_or(String::new(), |[median_s, most_s]| {
         format!("; the recorder was {} ms behind it, at most {} ms", ms(median_s), ms(most_s))
     });

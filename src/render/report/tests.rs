@@ -191,7 +191,10 @@ fn advice_names_the_log_and_a_gentler_plan_only_where_the_log_holds_its_task() {
     assert!(with.contains("task-1-run.mcap") && with.contains("gentler plan too"), "{with}");
     let mut spaced = report("task-1-run.mcap");
     spaced.paths = vec!["it's 1.mcap".into(), "2.mcap".into()];
-    assert!(next(&spaced).contains("replan 'it'\\''s 1.mcap' 2.mcap --keep-plan"), "{}", next(&spaced));
+    // Files of one run are one log first: `replan` takes each for a run.
+    let joined =
+        "join 'it'\\''s 1.mcap' 2.mcap -o whole.mcap &amp;&amp; hydrotrace replan whole.mcap --keep-plan";
+    assert!(next(&spaced).contains(joined), "{}", next(&spaced));
 }
 
 #[test]

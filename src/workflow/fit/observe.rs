@@ -41,6 +41,7 @@ pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, Obse
     let path = inputs.first().map(|input| input.name().to_owned()).unwrap_or_default();
     let read = read.clone().wanting(&SIGNALS);
     let recording = LogFiles::with(inputs, &read).and_then(|files| files.scan()?.read(&read));
+    let recording = recording.and_then(of_joints);
     let mut recording = recording.map_err(|source| ObserveFailure { path, source })?;
     on_even_instants(&mut recording);
     let Recording { planned, measured, remarks, .. } = &mut recording;
@@ -52,6 +53,15 @@ pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, Obse
         );
         remarks.add(Code::FrozenSensor, (track.len() - own.len()) as u64, message);
         *track = own;
+    }
+    Ok(recording)
+}
+
+/// An error of a log of poses, whose places are no joints.
+fn of_joints(recording: Recording) -> Result<Recording, LogError> {
+    let places = recording.planned.tracks.iter().all(|track| ["x", "y", "z"].contains(&track.name()));
+    if recording.poses.is_some() && places {
+        return Err(LogError::PosesAlone { topic: recording.source.measured_topic });
     }
     Ok(recording)
 }

@@ -1,6 +1,7 @@
-//! `join`: adds the plan to the log of a run that holds command and measurement.
+//! `join`: adds the plan to the log of a run that holds command and measurement, or writes the files of one run as one.
 
 mod document;
+mod gather;
 mod place;
 
 use std::path::{Path, PathBuf};
@@ -8,6 +9,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 pub use document::Joined;
+pub use gather::{Gathered, gather};
 
 use super::carried::{
     plan_log::states,
@@ -39,6 +41,22 @@ pub struct Inputs {
     pub output: PathBuf,
 }
 
+impl Inputs {
+    /// An error for an output among the files of a folder that is read: it would be one of them the next time.
+    fn check_output(&self) -> Result<(), JoinFailure> {
+        let folder = self.output.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.unwrap_or(Path::new("."));
+        let within = |log: &&PathBuf| {
+            log.is_dir()
+                && log.canonicalize().is_ok_and(|log| folder.canonicalize().is_ok_and(|out| out == log))
+        };
+        match self.logs.iter().find(within) {
+            Some(log) => Err(JoinFailure::Inside { log: log.clone(), output: self.output.clone() }),
+            None => Ok(()),
+        }
+    }
+}
+
 /// Why a plan was not joined.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -47,6 +65,13 @@ pub enum JoinFailure {
     /// One of the logs.
     #[error(transparent)]
     Log(#[from] LogError),
+    /// The output is in the folder that is read.
+    #[error(
+        "{} is in {}, which is read as one recording, and would be a part of it from then on; write it elsewhere",
+        output.display(),
+        log.display()
+    )]
+    Inside { log: PathBuf, output: PathBuf },
     /// The log does not hold what was sent, so the start of the plan is unknown.
     #[error(
         "the log of the run does not say what was sent, so that the start of its plan is unknown; name what was \
@@ -128,6 +153,7 @@ fn read_plan(path: &Path) -> Result<Plan, JoinFailure> {
 ///
 /// [`JoinFailure`], naming what is missing; nothing is written then.
 pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
+    inputs.check_output()?;
     if inputs.read.cylinders.is_some() {
         return Err(JoinFailure::Cylinders);
     }

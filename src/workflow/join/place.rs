@@ -12,6 +12,8 @@ use crate::{
 
 /// Largest difference, as a share of the motion, at which a place is taken to be that of the plan.
 const FITS: f64 = 0.1;
+/// What leaves less than this share of what the command leaves was the plan.
+const CLEARLY: f64 = 0.5;
 /// Largest difference, as a share, at which the sent signal is taken to be the planned one.
 const SAME: f64 = 0.01;
 
@@ -53,8 +55,11 @@ impl Plan {
         }
         let as_planned = locate(&self.planned, sent).map(|found| (false, found));
         let as_command = self.command.as_ref().and_then(|command| Some((true, locate(command, sent)?)));
-        let both = as_command.into_iter().chain(as_planned);
-        let best = both.min_by(|a, b| share(&a.1).total_cmp(&share(&b.1)));
+        // What neither is told quite, as after a hold, was the command: a plan is made for it.
+        let best = match (as_command, as_planned) {
+            (Some(command), Some(plan)) if share(&plan.1) < CLEARLY * share(&command.1) => Some(plan),
+            (command, plan) => command.or(plan),
+        };
         let nowhere = || JoinFailure::Nowhere { plan: path.to_owned(), topic: topic.to_owned() };
         let (commanded, found) = best.ok_or_else(nowhere)?;
         if share(&found) > FITS {
@@ -104,7 +109,8 @@ fn doubt(found: &Located, path: &Path, topic: &str) -> Option<String> {
     let Some(pace) = found.pace else {
         let left = 100.0 * share(found);
         let doubt = format!(
-            "what was sent on {topic} is not quite what {plan} holds: {left:.1} % of the motion is left"
+            "what was sent on {topic} is not quite what {plan} holds: {left:.1} % of the motion is left; where it \
+             was held or changed on the way its time is that of the whole, and --at SECONDS gives another"
         );
         return (!is_same(found)).then_some(doubt);
     };

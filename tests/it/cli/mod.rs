@@ -25,6 +25,8 @@ mod next_run;
 mod other_machines;
 mod output;
 #[cfg(unix)]
+mod parts;
+#[cfg(unix)]
 mod pasted;
 #[cfg(unix)]
 mod pipes;

@@ -210,7 +210,7 @@ fn a_plan_in_a_file_of_its_own_fits_whatever_the_order_of_the_files() {
     let tables = said(&hydrotrace(folder.path(), "report a.csv b.csv"));
     assert!(tables.0 == 0 && !tables.1.contains("one-side"), "{}", tables.1);
     let (code, _, text) = said(&hydrotrace(folder.path(), "report b.csv"));
-    assert!(code == 1 && text.contains("give both files"), "{text}");
+    assert!(code == 1 && text.contains("makes one log of both"), "{text}");
 }
 
 #[test]

@@ -1,0 +1,127 @@
+//! Measurements of one plan whose clock, pace and lag are known.
+
+use super::*;
+
+fn series(at_s: impl Fn(f64) -> f64) -> Series {
+    let step = |t: f64| {
+        let x = t.clamp(0.0, 1.0);
+        x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+    };
+    let plan = |joint: f64, t: f64| joint * (step((t - 4.0) / 8.0) - 0.6 * step((t - 20.0) / 6.0));
+    let t_s: Vec<f64> = (0..4000).map(|k| f64::from(k) * 0.01).collect();
+    let track = |name: &str, size: f64| {
+        let q = t_s.iter().map(|&t| plan(size, at_s(t))).collect();
+        Track::new(name, t_s.clone(), q, &[]).unwrap()
+    };
+    Series { tracks: vec![track("swing", 1.0), track("boom", -0.5), track("stick", 0.8)] }
+}
+
+fn said(at_s: impl Fn(f64) -> f64) -> Option<String> {
+    message(&series(|t| t), &series(at_s), false)
+}
+
+#[test]
+fn clocks_that_differ_and_another_speed_are_told() {
+    for (by_s, told) in
+        [(-2.0, "2.00 s before"), (-0.8, "0.80 s before"), (3.0, "3.00 s after"), (9.3, "9.30 s")]
+    {
+        let found = said(|t| t - by_s);
+        assert!(found.as_ref().is_some_and(|one| one.contains(told)), "{by_s}: {found:?}");
+    }
+    for (pace, told) in [(1.25, "1.25 times as long"), (0.7, "0.70 times as long"), (1.4, "1.40 times")] {
+        let found = said(|t| 4.0 + (t - 4.0) / pace);
+        assert!(found.as_ref().is_some_and(|one| one.contains(told)), "{pace}: {found:?}");
+    }
+}
+
+#[test]
+fn joints_that_leave_in_time_and_lead_later_are_on_no_other_clock() {
+    // Speed feed-forward of one and a half behind a lag.
+    let plan = series(|t| t);
+    let leads = |track: &Track| {
+        let q = track.position();
+        let mut now = q[0];
+        let follow = |k: usize| {
+            let speed = (q[k] - q[k.saturating_sub(1)]) / 0.01;
+            let wanted = 1.5 * speed + 2.0 * (q[k] - now);
+            let late = if k < 30 { 0.0 } else { wanted };
+            now += 0.01 * late;
+            now
+        };
+        Track::new(track.name(), track.t_s(), (0..q.len()).map(follow).collect(), &[]).unwrap()
+    };
+    let measured = Series { tracks: plan.tracks.iter().map(leads).collect() };
+    let after = |track: &Track| {
+        let t_s: Vec<f64> = track.t_s().iter().map(|t| t + 0.12).collect();
+        Track::new(track.name(), t_s, track.position().to_vec(), &[]).unwrap()
+    };
+    let measured = Series { tracks: measured.tracks.iter().map(after).collect() };
+    assert_eq!(message(&plan, &measured, false), None);
+}
+
+#[test]
+fn what_machines_do_is_not() {
+    assert_eq!(said(|t| t), None);
+    assert_eq!(said(|t| t - 0.6), None);
+    assert_eq!(said(|_| 0.0), None, "none moves");
+    let plan = series(|t| t);
+    for share in [0.9, 0.7, 0.5, 0.35] {
+        let limited = |track: &Track| {
+            let fastest = track.position().windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
+            let mut now = track.position()[0];
+            let follow = |q: &f64| {
+                now += (q - now).clamp(-share * fastest, share * fastest);
+                now
+            };
+            let q = track.position().iter().map(follow).collect();
+            Track::new(track.name(), track.t_s(), q, &[]).unwrap()
+        };
+        let measured = Series { tracks: plan.tracks.iter().map(limited).collect() };
+        assert_eq!(message(&plan, &measured, false), None, "all at {share} of the speed that is asked");
+    }
+    assert_eq!(said(|t| t.min(10.0)), None, "they stop for good");
+    // A short motion behind a delay and a lag takes longer, and no other speed.
+    let short = |at_s: f64| {
+        let x = ((at_s - 4.0) / 1.2).clamp(0.0, 1.0);
+        0.5 * x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+    };
+    let t_s: Vec<f64> = (0..1200).map(|k| f64::from(k) * 0.01).collect();
+    let mut now = 0.0;
+    let follow = |t: &f64| {
+        now += (short(t - 0.1) - now) * (1.0 - (-0.01_f64 / 0.25).exp());
+        now
+    };
+    let measured = Track::new("boom", t_s.clone(), t_s.iter().map(follow).collect(), &[]).unwrap();
+    let planned = Track::new("boom", t_s.clone(), t_s.iter().map(|t| short(*t)).collect(), &[]).unwrap();
+    let [planned, measured] = [planned, measured].map(|track| Series { tracks: vec![track] });
+    assert_eq!(message(&planned, &measured, false), None, "a short motion");
+}
+
+#[test]
+fn a_slow_filter_of_set_values_is_no_clock_and_hides_none() {
+    let plan = series(|t| t);
+    let said = |filters: u32, lag_s: f64, late_s: f64| {
+        let behind = |track: &Track| {
+            let time_s = lag_s / f64::from(filters);
+            let mut q = track.position().to_vec();
+            for _ in 0..filters {
+                let mut now = q[0];
+                for at in &mut q {
+                    now += (*at - now) * (1.0 - (-0.01 / time_s).exp());
+                    *at = now;
+                }
+            }
+            Track::new(track.name(), track.t_s(), q, &[]).unwrap()
+        };
+        let measured = Series { tracks: series(|t| t - late_s).tracks.iter().map(behind).collect() };
+        message(&plan, &measured, false)
+    };
+    for (filters, lag_s) in [(1, 1.4), (2, 1.1), (2, 1.6), (3, 1.8)] {
+        assert_eq!(said(filters, lag_s, 0.0), None, "{filters} filters, {lag_s} s together");
+    }
+    // One filter as slow as the clock is late looks like three without a clock: that is not told.
+    for (filters, lag_s) in [(1, 0.3), (1, 0.44), (2, 0.8), (2, 1.1), (2, 1.6), (3, 1.8)] {
+        let late = said(filters, lag_s, 1.5);
+        assert!(late.is_some(), "{filters} filters, {lag_s} s together, on another clock");
+    }
+}

@@ -1,0 +1,87 @@
+//! The files of one run as one log: parts of a recording, or plan and measurement in a file each.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Inputs, JoinFailure};
+use crate::{
+    document::PROGRAM,
+    log::{LogFiles, ReadOptions, Sides},
+    remark::{Code, Remarks},
+};
+
+/// What the format is called.
+const FORMAT: &str = "hydrotrace.gathered.v1";
+
+/// What the new log holds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Gathered {
+    /// Always "hydrotrace.gathered.v1".
+    pub format: String,
+    /// Name and version of the program that wrote it.
+    pub program: String,
+    /// Files that were read.
+    pub files: usize,
+    /// Messages that were copied.
+    pub messages: u64,
+    /// Joints whose measurement was read.
+    pub joints: usize,
+    /// From the first to the last measurement, s.
+    pub duration_s: f64,
+    /// Doubts about the data.
+    pub remarks: Remarks,
+}
+
+/// Writes the files of one run as one log.
+///
+/// # Errors
+///
+/// [`JoinFailure`] if they hold no measurement or are not of one run; nothing is written then.
+pub fn gather(inputs: &Inputs) -> Result<Gathered, JoinFailure> {
+    inputs.check_output()?;
+    // Messages are copied as they are: what becomes of lengths is for the verb that reads them.
+    let read = ReadOptions { sides: Sides::MeasurementAtLeast, cylinders: None, ..inputs.read.clone() };
+    let files = LogFiles::with(inputs.logs.iter().cloned(), &read)?;
+    let log = files.scan()?;
+    let mut run = log.read(&read)?;
+    let [from_s, to_s] = run.measured.span_s().unwrap_or_default();
+    let (files, messages, unknown) = log.gather(&inputs.output)?;
+    run.remarks.add(
+        Code::UnknownChannel,
+        unknown,
+        "messages of channels that their file does not define, left out",
+    );
+    Ok(Gathered {
+        format: FORMAT.to_owned(),
+        program: PROGRAM.to_owned(),
+        files,
+        messages,
+        joints: run.measured.tracks.len(),
+        duration_s: to_s - from_s,
+        remarks: run.remarks,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::is_written_and_read;
+
+    #[test]
+    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
+        let document = Gathered {
+            format: FORMAT.to_owned(),
+            program: PROGRAM.to_owned(),
+            files: 3,
+            messages: 1000,
+            joints: 4,
+            duration_s: 20.0,
+            remarks: Remarks::default(),
+        };
+        is_written_and_read(
+            &document,
+            "gathered.v1.schema.json",
+            "hydrotrace join without a plan, version 1",
+        );
+    }
+}
