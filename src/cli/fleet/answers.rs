@@ -198,7 +198,7 @@ pub(super) struct EffectArgs {
     #[command(flatten)]
     ask: AskArgs,
 
-    /// The machine [default: the one that was noted last]
+    /// The machine [default without --at: the one that was noted last]
     #[arg(long, value_name = "MACHINE")]
     machine: Option<String>,
 

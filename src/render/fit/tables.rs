@@ -11,6 +11,7 @@ use crate::{
         metric::{Units, number, position},
     },
     replay::Dimension,
+    series::JointKind,
     text::shell_word,
     workflow::fit::{Fitted, torque::JointTorque},
 };
@@ -195,8 +196,10 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         let why = if fitted.runs.iter().any(|run| run.identifies) {
             "The strokes of the identification run were not faster than these joints, which kept up with them.".to_owned()
         } else {
-            let joints =
-                fit.joints.iter().map(|joint| format!(" --joint {}=HOME:LOW:HIGH", shell_word(&joint.name)));
+            let joints = fit.joints.iter().map(|joint| {
+                let unit = if joint.kind == JointKind::Slides { "mm" } else { "" };
+                format!(" --joint {}=HOME:LOW:HIGH{unit}", shell_word(&joint.name))
+            });
             format!(
                 "Smooth runs hardly reach the limits of speed. `hydrotrace excite -o id.mcap{}`, or with the --task of the arm, writes a run \
                  that does, with strokes faster than the machine; it also narrows the interval of the dead band. Fit it together with \

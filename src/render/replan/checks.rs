@@ -167,8 +167,8 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
             limits([*broken, *between], nearest) + &fast + &sharp + &beyond(outside) + &none
         }
         Finding::TooFast(TooFast { joint, kind, planned_rad_s, limit_rad_s: [own, most] }) => format!(
-            "The plan of {joint} goes up to {}/s, and the joint was found to make {}/s, {}/s at most: no command mends that, a \
-             slower plan does.",
+            "The plan of {joint} goes up to {}/s, and the joint was found to make {}/s, {}/s at most, in these runs: no command mends that, \
+             a slower plan does, or, where joints share a pump or a supply, fewer of them at once.",
             position(*kind, *planned_rad_s),
             position(*kind, *own),
             position(*kind, *most)

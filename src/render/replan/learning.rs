@@ -39,6 +39,9 @@ pub(super) fn kept(replanned: &Replanned) -> Option<String> {
                 .to_owned()
         }
         KeepReason::GainedLittle => ", which is no better than the best run before it by a tenth.".to_owned(),
+        KeepReason::Settled => {
+            ". Less than a tenth of that is expected to be gained by another correction.".to_owned()
+        }
         KeepReason::Failed { corrections } => {
             format!("; {} gained nothing.", counted(*corrections, "correction"))
         }
@@ -100,7 +103,8 @@ fn repeats(replanned: &Replanned) -> Option<&'static str> {
             .zip(run.mean_peak_rad)
             .is_some_and(|(promised, came)| came > promised.mean_peak_margin_rad)
     });
-    let told = error > 0.0 && !surprised && !matches!(because, KeepReason::ExpectedWorse { .. });
+    let of_none = matches!(because, KeepReason::ExpectedWorse { .. } | KeepReason::Settled);
+    let told = error > 0.0 && !surprised && !of_none;
     told.then_some(match (spread >= MOSTLY * MOSTLY * error, failed) {
         (true, _) => " What is left comes differently from run to run.",
         (false, false) => " What is left comes again in every run, and the last correction hardly lessened it.",

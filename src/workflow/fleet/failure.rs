@@ -28,7 +28,7 @@ pub enum FleetFailure {
     #[error("another scan is writing to {}; wait for its end", path.display())]
     Locked { path: PathBuf },
     /// No dataset.
-    #[error("{} holds no dataset; `hydrotrace fleet scan LOGS --into {}` makes one", path.display(), path.display())]
+    #[error("{} holds no dataset; `hydrotrace fleet scan LOGS --into {}` makes one", path.display(), shell_argument(path))]
     NoDataset { path: PathBuf },
     /// A source that leads to no log.
     #[error(

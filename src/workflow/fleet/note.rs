@@ -121,8 +121,11 @@ impl Note {
 ///
 /// # Errors
 ///
-/// [`FleetFailure`] if the dataset cannot be read.
+/// [`FleetFailure`] if there is no dataset, or it cannot be read.
 pub fn notes(root: &Path, machine: Option<&str>) -> Result<Vec<Note>, FleetFailure> {
+    if parts(root, Name::Runs)?.is_empty() {
+        return Err(FleetFailure::NoDataset { path: root.to_owned() });
+    }
     let mut found = Vec::new();
     for part in parts(root, Name::Interventions)? {
         let path = root.join(part.path(Name::Interventions));

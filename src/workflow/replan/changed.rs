@@ -246,12 +246,7 @@ impl History {
     }
 
     /// What is to be said of a machine that changed, and of one that goes on to.
-    pub(super) fn remark_changes(
-        &self,
-        changed: Option<String>,
-        goes_on: Option<String>,
-        remarks: &mut Remarks,
-    ) {
+    pub(super) fn remark_changes(&self, changed: Option<String>, remarks: &mut Remarks) {
         let again = (changed.is_some() && self.changes > 1).then(|| {
             let message = format!(
                 "the machine changed {} times between these runs, by up to {} of mean peak error: it may again, so half of \
@@ -261,8 +256,7 @@ impl History {
             );
             (self.changes, message)
         });
-        let all = [changed.map(|message| (1, message)), again, goes_on.map(|message| (1, message))];
-        for (count, message) in all.into_iter().flatten() {
+        for (count, message) in changed.map(|message| (1, message)).into_iter().chain(again) {
             remarks.add(Code::MachineChanged, count as u64, message);
         }
     }

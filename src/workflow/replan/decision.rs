@@ -3,19 +3,22 @@
 use serde::{Deserialize, Serialize};
 
 use super::history::{History, PastRun, WORTH};
-use crate::fit::MORE_ERROR;
+use crate::{fit::MORE_ERROR, series::Series};
 
 /// A mean peak up to this times the least is as good.
 const NEARLY: f64 = 1.05;
 
-/// A correction that is expected to come above the best run by this factor is not worth sending.
+/// A correction that is expected to come above the best run by this factor is not worth sending; above the newest, of a machine that goes
+/// on changing.
 const WORSE: f64 = 1.1;
+const WORSE_AGAIN: f64 = 1.25;
 
 /// A correction that came to more than the best before it by this factor met something else than too large a step.
 const FAR: f64 = 2.0;
 
-/// So many corrections that gained nothing are enough.
+/// So many corrections that gained nothing are enough, and so many that gained less than a tenth together.
 const FAILURES: usize = 2;
+const SEVERAL: usize = 3;
 
 /// Whether to go on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,6 +54,8 @@ pub enum KeepReason {
         /// How many.
         corrections: usize,
     },
+    /// Hardly less is expected of the next correction, after some that gained little together or as the same again.
+    Settled,
     /// The next correction is expected to do worse.
     ExpectedWorse {
         /// Its mean peak, rad.
@@ -103,7 +108,8 @@ impl History {
         self.runs.iter().enumerate().filter_map(|(k, run)| Some((k, run.mean_peak_rad?))).collect()
     }
 
-    /// The run with the least mean peak, rad, or of those that are nearly as good the one with the least error over the whole run.
+    /// The run with the least mean peak, rad, or of those that are nearly as good the one with the least error over the whole run; the
+    /// plan as it is, too, where a correction gained less than a tenth at starts and lost more elsewhere.
     /// Of what was sent again, the last time counts, and by what that grew all else that was sent before it would have grown.
     fn best(&self) -> Option<(usize, f64)> {
         let peaks_rad = self.peaks_rad();
@@ -118,7 +124,12 @@ impl History {
         let left = left.filter(|k| again(*k).is_none());
         let left: Vec<usize> = left.collect();
         let least_rad = left.iter().map(|k| peak(*k)).reduce(f64::min)?;
-        let best = left.into_iter().filter(|k| peak(*k) <= NEARLY * least_rad);
+        let lost =
+            |k: &usize| Overall::of(&self.runs, &self.runs[*k]).is_some_and(|overall| overall.is_worse());
+        let plain = |k: usize| !self.runs[k].corrected && WORTH * peak(k) <= least_rad;
+        let near: Vec<usize> = left.iter().copied().filter(|k| peak(*k) <= NEARLY * least_rad).collect();
+        let none_better = near.iter().all(lost);
+        let best = left.into_iter().filter(|k| near.contains(k) || none_better && plain(*k));
         let best = best
             .min_by(|a, b| now(|run| run.rms_error_rad, *a).total_cmp(&now(|run| run.rms_error_rad, *b)))?;
         Some((best, self.runs[best].mean_peak_rad?))
@@ -179,16 +190,34 @@ impl History {
         Decision::Keep { run, because, best_rad, last_rad }
     }
 
-    /// What to keep in place of a correction whose mean peak is expected to be clearly above that of the best run.
+    /// What to keep in place of a correction whose mean peak is expected to be clearly above that of the best run; of a machine that
+    /// goes on changing above that of the newest.
     pub(super) fn better_than(&self, expected_rad: f64) -> Option<Decision> {
-        let peaks = self.peaks_rad();
-        let (last, (run, best_rad)) = (peaks.last()?, self.best()?);
+        let last = self.peaks_rad().pop()?;
+        let ((run, best_rad), most) = if self.follows { (last, WORSE_AGAIN) } else { (self.best()?, WORSE) };
         let because = KeepReason::ExpectedWorse { expected_rad };
-        (expected_rad > WORSE * best_rad && !self.follows).then_some(Decision::Keep {
+        let worse = expected_rad > most * best_rad;
+        worse.then_some(Decision::Keep { run, because, best_rad, last_rad: last.1 })
+    }
+
+    /// What to keep where hardly less is expected of a command that was sent in the newest run already, or after several corrections
+    /// that gained less than a tenth together.
+    pub(super) fn settled(&self, command: &Series, expected_rad: f64) -> Option<Decision> {
+        let peaks = self.peaks_rad();
+        let (last, last_rad) = *peaks.last()?;
+        let corrected = |(k, _): &&(usize, f64)| self.runs[*k].corrected;
+        let newest = peaks.iter().rev().take_while(corrected).take(SEVERAL).count();
+        let (before, after) = peaks.split_at(peaks.len() - newest);
+        let least = |peaks: &[(usize, f64)]| best(peaks).map_or(f64::INFINITY, |best| best.1);
+        let slow = newest == SEVERAL && least(after) >= WORTH * least(before);
+        let little = expected_rad >= WORTH * last_rad && newest > 0 && !self.follows;
+        let (run, best_rad) = if slow { self.best()? } else { (last, last_rad) };
+        let because = KeepReason::Settled;
+        (little && (slow || self.is_again(last, command))).then_some(Decision::Keep {
             run,
             because,
             best_rad,
-            last_rad: last.1,
+            last_rad,
         })
     }
 }
@@ -257,6 +286,54 @@ mod tests {
         assert_eq!(of(&[0.0, 0.1, 0.2, 0.1], &[1.0, 0.5, 0.1, 0.5]), Decision::Send, "an older one again");
         let kept = kept(3, KeepReason::GainedLittle, 0.1, 0.1);
         assert_eq!(of(&[0.0, 0.1, 0.2, 0.25], &[1.0, 0.5, 0.1, 0.1]), kept);
+    }
+
+    #[test]
+    fn the_plan_is_kept_where_corrections_gained_little_at_starts_and_lost_more_elsewhere() {
+        let mut history = history(&[1.0, 0.95, 0.96]);
+        history.runs[1..].iter_mut().for_each(|run| run.rms_error_rad = 0.6);
+        assert_eq!(history.decision(), kept(0, KeepReason::GainedLittle, 1.0, 0.96));
+        history.runs[1].rms_error_rad = 0.45;
+        assert_eq!(history.decision(), kept(1, KeepReason::GainedLittle, 0.95, 0.96));
+    }
+
+    #[test]
+    fn of_a_machine_that_goes_on_changing_the_newest_run_counts() {
+        let mut history = history(&[4.2, 1.0, 1.2]);
+        history.follows = true;
+        assert_eq!(history.better_than(1.4), None);
+        let because = KeepReason::ExpectedWorse { expected_rad: 1.6 };
+        assert_eq!(history.better_than(1.6), Some(kept(2, because, 1.2, 1.2)));
+    }
+
+    #[test]
+    fn what_was_sent_already_is_kept() {
+        let mut history = history(&[1.0, 0.5]);
+        history.plan = sent(1.0);
+        history.series = [1.0, 1.1].map(|by| (sent(by), sent(0.0))).into();
+        history.corrections_rad = vec![0.0, 0.1];
+        let settled =
+            |history: &History, by: f64, expected_rad: f64| history.settled(&sent(by), expected_rad);
+        assert_eq!(settled(&history, 1.2, 0.49), None);
+        assert_eq!(settled(&history, 1.102, 0.49), Some(kept(1, KeepReason::Settled, 0.5, 0.5)));
+        assert_eq!(settled(&history, 1.102, 0.3), None, "it is expected to gain");
+        history.follows = true;
+        assert_eq!(settled(&history, 1.102, 0.49), None);
+        // Small corrections are as different as large ones, by what they leave.
+        history.follows = false;
+        history.series = [1.0, 1.01].map(|by| (sent(by), sent(0.0))).into();
+        (history.corrections_rad, history.runs[1].mean_peak_rad) = (vec![0.0, 0.01], Some(1e-3));
+        assert_eq!(settled(&history, 1.0105, 1e-3), None);
+    }
+
+    #[test]
+    fn after_three_corrections_that_gained_little_together_the_best_is_kept() {
+        let mut history = history(&[1.0, 0.101, 0.096, 0.094, 0.093]);
+        history.plan = sent(1.0);
+        history.series = [1.0, 1.2, 1.21, 1.22, 1.23].map(|by| (sent(by), sent(0.0))).into();
+        history.corrections_rad = vec![0.0, 0.2, 0.21, 0.22, 0.23];
+        assert_eq!(history.settled(&sent(1.3), 0.09), Some(kept(4, KeepReason::Settled, 0.093, 0.093)));
+        assert_eq!(history.settled(&sent(1.3), 0.05), None);
     }
 
     #[test]

@@ -139,8 +139,8 @@ impl std::fmt::Display for Said<'_> {
         match self.0 {
             Broken::Cut { begins, .. } => write!(
                 f,
-                "the log was cut, and no arm {} at once; give the whole log, or with --from and --to a part of it that \
-                 begins and ends at rest",
+                "the log was cut, and no arm {} at once; give the whole log (`hydrotrace join` makes one of parts), or with --from and \
+                 --to a part of it that begins and ends at rest",
                 if *begins { "starts" } else { "stops" }
             ),
             Broken::Halted { .. } => write!(

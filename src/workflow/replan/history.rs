@@ -19,8 +19,9 @@ use crate::{
     },
 };
 
-/// Commands that differ by less than this share of their corrections are the same.
+/// Commands that differ by less than these shares of their corrections, and of the mean peak that is left, are the same.
 pub(super) const SAME: f64 = 0.05;
+const SAME_OF_LEFT: f64 = 0.1;
 
 /// A machine that changed so often changes from run to run.
 const OFTEN: usize = 2;
@@ -220,11 +221,41 @@ impl History {
         both.is_some_and(|((a, _), (b, _))| within(a, b, most_rad))
     }
 
-    /// Whether the same was sent in two runs, but for a share of what they corrected.
+    /// Whether the same was sent in two runs, but for a share of what they corrected and left.
     pub(super) fn same(&self, one: usize, other: usize) -> bool {
-        let corrected = |k: usize| self.corrections_rad.get(k).copied().unwrap_or(0.0);
-        let most_rad = SAME_RAD.max(SAME * corrected(one).min(corrected(other)));
-        self.differ_by(one, other, most_rad)
+        self.differ_by(
+            one,
+            other,
+            self.alike_rad(one, self.corrected_rad(other))
+                .min(self.alike_rad(other, self.corrected_rad(one))),
+        )
+    }
+
+    /// The newest run in which a command was sent, but for a share of what it corrects.
+    pub(super) fn sent_in(&self, command: &Series) -> Option<usize> {
+        let corrects_rad = farthest(command, &self.plan);
+        let same = |k: &usize| within(&self.series[*k].0, command, self.alike_rad(*k, corrects_rad));
+        (0..self.series.len()).rev().find(same)
+    }
+
+    /// Whether a command is what was sent in a run, but for less than a share of what it corrects and left.
+    pub(super) fn is_again(&self, run: usize, command: &Series) -> bool {
+        let most_rad = self.shares_rad(run, farthest(command, &self.plan));
+        self.series.get(run).is_some_and(|(sent, _)| within(sent, command, most_rad))
+    }
+
+    fn corrected_rad(&self, run: usize) -> f64 {
+        self.corrections_rad.get(run).copied().unwrap_or(0.0)
+    }
+
+    /// What was sent in a run and a command that corrects by so much are alike if they differ by less than this, rad.
+    fn alike_rad(&self, run: usize, corrects_rad: f64) -> f64 {
+        SAME_RAD.max(self.shares_rad(run, corrects_rad))
+    }
+
+    fn shares_rad(&self, run: usize, corrects_rad: f64) -> f64 {
+        let left_rad = self.runs.get(run).and_then(|run| run.mean_peak_rad).unwrap_or(f64::INFINITY);
+        (SAME * corrects_rad.min(self.corrected_rad(run))).min(SAME_OF_LEFT * left_rad)
     }
 }
 

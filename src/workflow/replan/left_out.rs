@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Inputs;
+use super::{Inputs, out_of_time::out_of_time};
 use crate::{
     log::Recording,
     math::deviation,
@@ -49,6 +49,7 @@ pub(super) fn without_useless(
     twice(&observed, &names, &mut left);
     unlike_others(&observed, &mut left, held_back);
     unlike_others(&observed, &mut left, early);
+    unlike_others(&observed, &mut left, out_of_time);
     let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
     let dead = dead(&stay.iter().map(|k| &observed[*k]).collect::<Vec<_>>());
     left.extend(dead.into_iter().map(|(place, why)| (stay[place], why)));

@@ -1,5 +1,6 @@
 //! `replan`: from the logs of runs to a plan and a command for the next one.
 
+mod candidate;
 mod changed;
 mod checks;
 mod command;
@@ -18,7 +19,9 @@ mod limits;
 mod machine;
 mod one_way;
 mod order;
+mod out_of_time;
 mod outcome;
+mod parts;
 mod predicted;
 mod retime;
 mod same_way;
@@ -48,36 +51,25 @@ pub use unclear::Unclear;
 
 use super::fit;
 use crate::{
-    fit::{Fit, JointFit, Learning, Step, Trial},
+    fit::{Fit, JointFit},
     log::Recording,
-    math::range,
     plan::{PlanEvaluation, Setup},
     remark::Code,
-    series::Series,
     task::{Ceilings, Objective, Objectives},
-    threads,
-    units::DEGREE_RAD,
-    workflow::{carried::rest::PLAN_LEAD_S, names::told_apart, plan::Shaping},
+    workflow::{names::told_apart, plan::Shaping},
 };
-use command::commanded;
+use candidate::{Candidate, Maker, Sampled, decided};
 use correctable::correctable;
 use history::History;
 use last::Last;
 use left_out::without_useless;
 use machine::machine;
 use order::in_order;
+use out_of_time::out_of_time;
 use samples::sampled;
-use subject::Subject;
-use warp::Warp;
 
 /// Timings of the search that are looked at with their commands.
 const CANDIDATES: usize = 6;
-
-/// A plan of a joint that travels less is to hold it, rad.
-const MOVES_RAD: f64 = 0.5 * DEGREE_RAD;
-
-/// A new timing must be expected to lower the sum of all peaks by this share; otherwise the proven one stays.
-const WORTH: f64 = 0.02;
 
 /// Plans again.
 ///
@@ -102,6 +94,7 @@ pub fn run(
     inputs.check_bounds(&last.plan)?;
     let names = told_apart(&inputs.logs);
     let mut history = History::of((&names, &inputs.logs), observed, &last.plan, &inputs.rules)?;
+    parts::remark((&inputs.logs, &names), observed, &history.others, &mut doubts);
     let chosen = |places: &mut dyn Iterator<Item = usize>| -> (Vec<String>, Vec<&Recording>) {
         places.map(|k| (names[k].clone(), &observed[k])).unzip()
     };
@@ -114,7 +107,7 @@ pub fn run(
     let (logs, own) = chosen(&mut (0..observed.len()).filter(|k| !others.contains(k)));
     let (fit, fitted_to, mut remarks) = machine(inputs, &logs, &own)?;
     remarks.extend(doubts);
-    history.remark_changes(changed, goes_on, &mut remarks);
+    history.remark_changes(changed, &mut remarks);
     // The fit is to what was sent, but the next command is to follow the plan.
     let doubts = observed.iter().flat_map(|run| run.remarks.as_slice());
     let sent = doubts.filter(|remark| remark.code == Code::PlanIsCommand);
@@ -155,25 +148,12 @@ pub fn run(
         return Err(ReplanFailure::NoTask { path: path.clone() });
     }
     let setup = last.request.as_ref().map(|request| &request.setup);
-    let decision = if learns { history.decision() } else { Decision::Send };
     let options = candidates(&last, search.as_ref())?;
-    let mut maker =
-        Maker { inputs, precompensates, fit: &fit, setup, last: &last, history: &history, decision };
-    let made = threads::mapped(&options, || (), |(), (new, plan)| maker.candidate(new.clone(), plan.clone()));
-    let mut chosen = choose(made.into_iter().collect::<Result<_, _>>()?)
-        .ok_or_else(|| ReplanFailure::AtRest { path: path.clone() })?;
-    // What is kept is no other correction, whatever is expected of it.
-    if let Some(keep) = chosen.kept_instead(&history).filter(|_| maker.decision == Decision::Send) {
-        maker.decision = keep;
-        let kept = maker.candidate(None, last.plan.clone())?;
-        // Joints that the kept run spoilt are sent something else.
-        if kept.predicted.mean_peak_rad < chosen.predicted.mean_peak_rad {
-            chosen = kept;
-        } else {
-            maker.decision = Decision::Send;
-        }
+    let maker = Maker { inputs, precompensates, fit: &fit, setup, last: &last };
+    let (chosen, decision) = decided(&maker, &mut history, &options, learns)?;
+    if let Some(message) = goes_on.filter(|_| history.follows) {
+        remarks.add(Code::MachineChanged, 1, message);
     }
-    let decision = maker.decision;
     if chosen.new.is_none() && chosen.astray() {
         return Err(ReplanFailure::Astray { path: path.clone() });
     }
@@ -194,8 +174,11 @@ pub fn run(
 fn unspoilt(inputs: &Inputs, observed: &[Recording]) -> Result<(), ReplanFailure> {
     for (path, recording) in inputs.logs.iter().zip(observed) {
         let remarks = recording.remarks.as_slice();
-        if let Some(remark) = remarks.iter().find(|remark| remark.code.spoils_runs()) {
-            return Err(ReplanFailure::Spoilt { path: path.clone(), why: remark.message.clone() });
+        let spoilt = remarks.iter().find(|remark| remark.code.spoils_runs());
+        let spoilt = spoilt.map(|remark| remark.message.clone());
+        // Those that others tell of are left out.
+        if let Some(why) = spoilt.or_else(|| out_of_time(recording).map(|(_, why)| why)) {
+            return Err(ReplanFailure::Spoilt { path: path.clone(), why });
         }
     }
     Ok(())
@@ -238,9 +221,6 @@ fn searched(
     Ok(Search { front, plans, shaping, evaluations, ceilings, held, evaluation })
 }
 
-/// A plan under the limits of the search, where it is not the last one, and its samples.
-type Sampled = (Option<PlanEvaluation>, Series);
-
 /// Plans to look at with their commands: the last one first.
 fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, ReplanFailure> {
     let (Some(search), Some(request)) = (search, &last.request) else {
@@ -255,108 +235,4 @@ fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, Repl
         return std::iter::once(Ok((None, last.plan.clone()))).chain(others).collect();
     }
     others.collect()
-}
-
-/// A plan with its command and what is expected of it.
-pub(super) struct Candidate {
-    /// The plan under the limits of the search, if it is not the last one.
-    pub(super) new: Option<PlanEvaluation>,
-    pub(super) plan: Series,
-    /// Points a second of a trajectory to send.
-    pub(super) points_hz: f64,
-    pub(super) command: Option<Commanded>,
-    pub(super) predicted: Predicted,
-    pub(super) responses: Vec<Response>,
-}
-
-impl Candidate {
-    /// What to keep where more error is expected of a correction of the last plan than its best run had.
-    fn kept_instead(&self, history: &History) -> Option<Decision> {
-        let corrects = self.new.is_none() && self.command.as_ref().is_some_and(Commanded::applied);
-        history.better_than(self.predicted.mean_peak_rad).filter(|_| corrects)
-    }
-
-    /// Whether half of the joints that are to move, or more, do not follow.
-    fn astray(&self) -> bool {
-        let moves = |joint: &&JointCommand| {
-            self.plan.track(&joint.name).is_some_and(|track| {
-                let [lowest, highest] = range(track.position().iter().copied());
-                highest - lowest > MOVES_RAD
-            })
-        };
-        let joints = || self.command.iter().flat_map(|command| &command.joints).filter(moves);
-        let astray = joints().filter(|joint| joint.step == Step::Astray).count();
-        astray > 0 && 2 * astray >= joints().count()
-    }
-}
-
-/// Makes candidates.
-struct Maker<'a> {
-    inputs: &'a Inputs,
-    /// Whether a command is wanted and some joint is known well enough for one.
-    precompensates: bool,
-    fit: &'a Fit,
-    setup: Option<&'a Setup>,
-    last: &'a Last,
-    history: &'a History,
-    decision: Decision,
-}
-
-impl Maker<'_> {
-    /// `new` is of another plan than the last; its runs say nothing of this one.
-    fn candidate(&self, new: Option<PlanEvaluation>, plan: Series) -> Result<Candidate, ReplanFailure> {
-        let Self { inputs, precompensates, fit, setup, last, history, decision } = self;
-        let kept = new.is_none();
-        let motion = match (&new, setup) {
-            (Some(new), Some(setup)) => Some((setup.motion_through(&new.times_s, &new.via)?, PLAN_LEAD_S)),
-            _ => last.motion().zip(last.starts_s),
-        };
-        let warped = new.as_ref().and_then(|new| self.warped(&new.times_s, &plan));
-        let trials = match &warped {
-            _ if kept => history.trials(),
-            Some(measured) => vec![Trial { sent: &plan, measured }],
-            None => Vec::new(),
-        };
-        let keep = match decision {
-            Decision::Keep { run, .. } if kept => Some(*run),
-            _ => None,
-        };
-        let gain = inputs.learning.gain * if kept { history.trust() } else { 1.0 };
-        let anew = kept && history.anew();
-        let learning = Learning { gain, keep, anew, follow: kept && history.follows, ..inputs.learning };
-        let subject = Subject::new(&plan, motion, *setup);
-        let points_hz = subject.points_hz;
-        let command = precompensates.then(|| commanded(fit, &subject, &trials, learning)).transpose()?;
-        let sent = command.as_ref().map_or(&plan, |command| &command.series);
-        let newest = keep.unwrap_or(trials.len().saturating_sub(1));
-        let times = (0..trials.len()).filter(|k| kept && history.same(*k, newest)).count();
-        let base = trials.get(newest).map(|trial| (trial.sent, trial.measured, times));
-        let joints = || command.iter().flat_map(|command| &command.joints);
-        let learnt = |name: &str| {
-            joints().find(|joint| joint.name == name).map_or((None, None), |one| (one.spread_rad, one.held))
-        };
-        let (predicted, responses) = promised(fit, &plan, sent, base, learnt, &inputs.rules)?;
-        let predicted = if kept { predicted.unsteady(history.unsteady_rad()) } else { predicted };
-        Ok(Candidate { new, plan, points_hz, command, predicted, responses })
-    }
-
-    /// What the newest run tells of another timing.
-    fn warped(&self, new_s: &[f64], plan: &Series) -> Option<Series> {
-        let Self { fit, last, history, .. } = self;
-        let (starts_s, old_s) = (last.starts_s?, last.times_s.as_ref()?);
-        let warp = Warp {
-            old_s: old_s.iter().map(|t_s| starts_s + t_s).collect(),
-            new_s: new_s.iter().map(|t_s| PLAN_LEAD_S + t_s).collect(),
-        };
-        warp.run(fit, plan, history.newest()?)
-    }
-}
-
-/// The first unless another is expected to be better by enough.
-fn choose(made: Vec<Candidate>) -> Option<Candidate> {
-    let mut all = made.into_iter();
-    let first = all.next()?;
-    let most = (1.0 - WORTH) * first.predicted.sum_of_peaks_rad;
-    let better = all.min_by(|a, b| a.predicted.sum_of_peaks_rad.total_cmp(&b.predicted.sum_of_peaks_rad));
-    Some(better.filter(|better| better.predicted.sum_of_peaks_rad < most).unwrap_or(first))
 }

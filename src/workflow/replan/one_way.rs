@@ -51,40 +51,52 @@ impl History {
         {
             return None;
         }
-        let (now, then) = (self.off_rad(run), self.off_rad(*before));
+        let (now, then) = (self.off_rad(run, &|_| true), self.off_rad(*before, &|_| true));
         // As far back as corrections were made.
         let earlier = others.last().filter(|k| self.taught(**k, *before));
         if correlation(&now, &then) < AGREES
-            || earlier.is_some_and(|k| correlation(&then, &self.off_rad(*k)) < AGREES)
+            || earlier.is_some_and(|k| correlation(&then, &self.off_rad(*k, &|_| true)) < AGREES)
         {
             return None;
         }
         let older = fits(&runs.iter().map(|k| self.places[*k]).collect::<Vec<_>>())?;
-        let missed = self.missed(&older, run);
+        // Of a joint without a model that holds, or with a limit that joints share, it says nothing that a run could gainsay.
+        let shares = |name: &str| {
+            older.shared.iter().flat_map(|shared| &shared.joints).any(|joint| joint.name == name)
+        };
+        let holds = |name: &str| older.joint(name).is_some_and(|joint| joint.trusted() && joint.model_holds);
+        let told = |name: &str| holds(name) && !shares(name);
+        let (now, missed) = (self.off_rad(run, &told), self.missed(&older, run, &told));
         let share = square(&missed).sqrt() / square(&now).sqrt();
         (correlation(&missed, &now) >= AGREES && share >= MISSED).then_some(*before)
     }
 
     /// Whether the next run was sent what a corrected one had taught.
     fn taught(&self, run: usize, next: usize) -> bool {
-        let most_rad = self.off_rad(run).iter().fold(0.0_f64, |most, off| most.max(off.abs()));
+        let most_rad = self.off_rad(run, &|_| true).iter().fold(0.0_f64, |most, off| most.max(off.abs()));
         self.runs[run].corrected && !self.differ_by(run, next, TAUGHT * most_rad)
     }
 
-    /// Planned less measured angles of all joints, one after the other, without what is fast, rad.
-    fn off_rad(&self, run: usize) -> Vec<f64> {
-        self.each(run, |planned_rad, measured_rad, _| planned_rad - measured_rad, None)
+    /// Planned less measured angles of joints, one after the other, without what is fast, rad.
+    fn off_rad(&self, run: usize, told: &dyn Fn(&str) -> bool) -> Vec<f64> {
+        self.each(run, |planned_rad, measured_rad, _| planned_rad - measured_rad, (None, told))
     }
 
     /// What a model of other runs has beyond what was measured.
-    fn missed(&self, fit: &Fit, run: usize) -> Vec<f64> {
-        self.each(run, |_, measured_rad, modelled_rad| modelled_rad - measured_rad, Some(fit))
+    fn missed(&self, fit: &Fit, run: usize, told: &dyn Fn(&str) -> bool) -> Vec<f64> {
+        self.each(run, |_, measured_rad, modelled_rad| modelled_rad - measured_rad, (Some(fit), told))
     }
 
-    fn each(&self, run: usize, of: fn(f64, f64, f64) -> f64, fit: Option<&Fit>) -> Vec<f64> {
+    /// Of the joints that are told of.
+    fn each(
+        &self,
+        run: usize,
+        of: fn(f64, f64, f64) -> f64,
+        (fit, told): (Option<&Fit>, &dyn Fn(&str) -> bool),
+    ) -> Vec<f64> {
         let (sent, measured) = &self.series[run];
         let mut all = Vec::new();
-        for planned in &self.plan.tracks {
+        for planned in self.plan.tracks.iter().filter(|track| told(track.name())) {
             let (Some(sent), Some(measured)) = (sent.track(planned.name()), measured.track(planned.name()))
             else {
                 continue;

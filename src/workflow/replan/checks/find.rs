@@ -1,6 +1,6 @@
 //! The checks one by one.
 
-use super::super::{MOVES_RAD, outcome::CAREFUL};
+use super::super::{candidate::MOVES_RAD, outcome::CAREFUL};
 use super::{
     Check, Fastest, Finding, JointTrust, Level, Outside, Overall, Reason, Replanned, Sharpest, TooFast,
 };
