@@ -162,7 +162,7 @@ impl Args {
             at_s: None,
             output: output.clone(),
         };
-        let words: Vec<String> = logs.iter().map(|log| argument(log)).collect();
+        let words: Vec<String> = logs.iter().map(argument).collect();
         let line = ["join", &words.join(" "), "--plan", &argument(plan), "-o", &argument(&output)];
         let step = format!(
             "the recording is whole, but without its plan; `{}` joins them, with the option that is named below",

@@ -44,7 +44,7 @@ impl Given {
             || time_base.is_some()
             || range.cuts()
             || cylinders.is_some()
-            || options.measured_delay_ns != 0
+            || options.measured_delay_ns.is_some()
             || !(joints.is_empty() && continuous.is_empty());
         Self { words: columns.into_iter().chain([slide, map, degrees]).flatten().collect(), more }
     }

@@ -30,10 +30,9 @@ pub struct ReadOptions {
     pub planned_in_degrees: bool,
     /// The measurement is in degrees.
     pub measured_in_degrees: bool,
-    /// How much later than its instants the measurement is stamped, ns: taken off.
-    pub measured_delay_ns: i64,
-    /// Whether plan and measurement are stamped by one clock, so that joints which move before their plan do so.
-    pub one_clock: bool,
+    /// How much later than its instants the measurement is stamped, ns: taken off. 0 says that plan and measurement are of one clock, so
+    /// that joints which move before their plan do so; `None`: that is not known.
+    pub measured_delay_ns: Option<i64>,
     /// Whether to read the speeds that come with measured positions, too.
     pub measured_velocities: bool,
     /// Joints that slide, and the unit of their positions; those that the log's URDF calls prismatic do anyway, in m.

@@ -49,7 +49,7 @@ pub(crate) fn read_options(keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Rea
                 }
                 #[expect(clippy::cast_possible_truncation, reason = "bounded")]
                 let ns = (1e6 * ms).round() as i64;
-                read.measured_delay_ns = ns;
+                read.measured_delay_ns = Some(ns);
             }
             "from_s" => from_s = Some(value.extract()?),
             "to_s" => to_s = Some(value.extract()?),

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// Objects of the profile of drives (CiA 402) that are positions and speeds of its first axis.
+/// Objects of the profile of drives (`CiA` 402) that are positions and speeds of its first axis.
 const OBJECTS: [&str; 8] = ["6062", "6063", "6064", "607A", "606B", "606C", "60FC", "60FF"];
 
 /// A header without the numbers of objects of a drive, in brackets or bare, with a subindex or without.

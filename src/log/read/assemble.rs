@@ -96,7 +96,7 @@ pub(super) fn assemble(
             return Err(nothing_in(options.range, &assembly.extracted, chosen));
         }
     }
-    let delay_s = seconds_since(0, options.measured_delay_ns);
+    let delay_s = seconds_since(0, options.measured_delay_ns.unwrap_or(0));
     if delay_s != 0.0 {
         measured.earlier(delay_s);
     }
@@ -117,7 +117,12 @@ pub(super) fn assemble(
         repeated::of_command(&mut command.series, &mut remarks);
         held::of_command(command, sides[1].1, &mut remarks);
     }
-    spoilt::of_sides([sides[0].1, sides[1].1], command.as_ref(), options.one_clock, &mut remarks);
+    spoilt::of_sides(
+        [sides[0].1, sides[1].1],
+        command.as_ref(),
+        options.measured_delay_ns == Some(0),
+        &mut remarks,
+    );
     quality::of_pairs([sides[0].1, sides[1].1], options, assembly.kinds.stated(), &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);

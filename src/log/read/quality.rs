@@ -296,15 +296,17 @@ fn of_units(
         (false, false) => format!("{other}in degrees? then say {option}"),
     };
     let message = if looks_like_degrees(angle_rad / plan_rad) {
-        let cause = match options.planned_in_degrees {
-            true => cause(true, "--planned-degrees", "", "a plan"),
-            false => cause(false, "--measured-degrees", "measured ", ""),
+        let cause = if options.planned_in_degrees {
+            cause(true, "--planned-degrees", "", "a plan")
+        } else {
+            cause(false, "--measured-degrees", "measured ", "")
         };
         format!("{name} spans 57.3 times its plan: {cause}")
     } else if looks_like_degrees(plan_rad / angle_rad) {
-        let cause = match options.measured_in_degrees {
-            true => cause(true, "--measured-degrees", "", "a measurement"),
-            false => cause(false, "--planned-degrees", "", ""),
+        let cause = if options.measured_in_degrees {
+            cause(true, "--measured-degrees", "", "a measurement")
+        } else {
+            cause(false, "--planned-degrees", "", "")
         };
         format!("the plan of {name} spans 57.3 times the measurement: {cause}")
     } else if plan_rad.min(angle_rad) > TURN_AND_A_HALF_RAD && !options.continuous.iter().any(|c| c == name) {

@@ -24,7 +24,7 @@ pub(super) fn steps(report: &Report, read: &[String]) -> Vec<(Sentence, Option<S
     let mut joins = true;
     let mut line = |step: &Advice| {
         let lines = lines(step, report, limit, learns);
-        let from = if joins || lines.len() < 2 { 0 } else { 1 };
+        let from = usize::from(lines.len() > 1 && !joins);
         joins &= lines.len() < 2;
         let lines: Vec<String> = lines[from..].iter().map(|line| reading(line, read)).collect();
         (!lines.is_empty()).then(|| lines.join(" && "))

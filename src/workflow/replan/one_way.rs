@@ -23,6 +23,9 @@ const TAUGHT: f64 = 0.3;
 /// Errors are compared below this, Hz.
 const COMPARED_HZ: f64 = 1.0;
 
+/// Whether a joint is told of.
+type Told<'a> = &'a dyn Fn(&str) -> bool;
+
 impl History {
     /// Finds whether the machine goes on changing one way; what is to be said, if so.
     pub(super) fn follow(&mut self, fits: Fits) -> Option<String> {
@@ -78,12 +81,12 @@ impl History {
     }
 
     /// Planned less measured angles of joints, one after the other, without what is fast, rad.
-    fn off_rad(&self, run: usize, told: &dyn Fn(&str) -> bool) -> Vec<f64> {
+    fn off_rad(&self, run: usize, told: Told<'_>) -> Vec<f64> {
         self.each(run, |planned_rad, measured_rad, _| planned_rad - measured_rad, (None, told))
     }
 
     /// What a model of other runs has beyond what was measured.
-    fn missed(&self, fit: &Fit, run: usize, told: &dyn Fn(&str) -> bool) -> Vec<f64> {
+    fn missed(&self, fit: &Fit, run: usize, told: Told<'_>) -> Vec<f64> {
         self.each(run, |_, measured_rad, modelled_rad| modelled_rad - measured_rad, (Some(fit), told))
     }
 
@@ -92,7 +95,7 @@ impl History {
         &self,
         run: usize,
         of: fn(f64, f64, f64) -> f64,
-        (fit, told): (Option<&Fit>, &dyn Fn(&str) -> bool),
+        (fit, told): (Option<&Fit>, Told<'_>),
     ) -> Vec<f64> {
         let (sent, measured) = &self.series[run];
         let mut all = Vec::new();

@@ -197,7 +197,7 @@ fn a_known_delay_is_taken_off_a_pose_too() {
         log.send(came, stamp(k) + LATE_NS, pose_stamped(stamp(k) + LATE_NS, measured(k)));
     }
     assert_truth(
-        &reported(&log, ReadOptions { measured_delay_ns: LATE_NS, ..ReadOptions::default() }).unwrap(),
+        &reported(&log, ReadOptions { measured_delay_ns: Some(LATE_NS), ..ReadOptions::default() }).unwrap(),
     );
 }
 
