@@ -117,12 +117,8 @@ pub(super) fn assemble(
         repeated::of_command(&mut command.series, &mut remarks);
         held::of_command(command, sides[1].1, &mut remarks);
     }
-    spoilt::of_sides(
-        [sides[0].1, sides[1].1],
-        command.as_ref(),
-        options.measured_delay_ns == Some(0),
-        &mut remarks,
-    );
+    let one_clock = options.measured_delay_ns == Some(0);
+    spoilt::of_sides([sides[0].1, sides[1].1], command.as_ref(), one_clock, &mut remarks);
     quality::of_pairs([sides[0].1, sides[1].1], options, assembly.kinds.stated(), &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);
@@ -258,8 +254,7 @@ impl Assembly {
             return Vec::new();
         };
         let last = !pending.iter().any(|c| c.source == candidate.source && c.field == candidate.field);
-        let kinds = &self.kinds;
-        let unit = |joint: &str| kinds.unit_m(candidate.source, joint).unwrap_or(1.0);
+        let unit = |joint: &str| self.kinds.unit_m(candidate.source, joint).unwrap_or(1.0);
         samples(table, Reading { field, unit: positions.then_some(unit), last }, axis, &name, remarks)
     }
 
