@@ -280,6 +280,9 @@ pub(super) fn looks_like_degrees(ratio: f64) -> bool {
     (ratio / DEGREES_IN_RADIAN - 1.0).abs() < RATIO_TOLERANCE
 }
 
+/// What is the matter where headers state units and the ranges do not agree.
+const WRONG_HEADER: &str = "the header of one of the two says a wrong unit: put that right";
+
 /// Remarks on angles that look like degrees.
 fn of_units(
     planned: &Track,
@@ -289,37 +292,34 @@ fn of_units(
 ) {
     let (plan_rad, angle_rad) = (span_rad(planned.position()), span_rad(measured.position()));
     let name = planned.name();
-    let header = "the header of one of the two says a wrong unit: put that right".to_owned();
-    let cause = |dropped: bool, option: &str, other: &str, of: &str| match (dropped, stated) {
-        (true, _) => format!("{option} does that to {of} in radians: drop it"),
-        (false, true) => header.clone(),
-        (false, false) => format!("{other}in degrees? then say {option}"),
-    };
+    let drop = |option: &str, of: &str| format!("{option} does that to {of} in radians: drop it");
+    let say = |hint: &str| if stated { WRONG_HEADER } else { hint }.to_owned();
     let message = if looks_like_degrees(angle_rad / plan_rad) {
         let cause = if options.planned_in_degrees {
-            cause(true, "--planned-degrees", "", "a plan")
+            drop("--planned-degrees", "a plan")
         } else {
-            cause(false, "--measured-degrees", "measured ", "")
+            say("measured in degrees? then say --measured-degrees")
         };
         format!("{name} spans 57.3 times its plan: {cause}")
     } else if looks_like_degrees(plan_rad / angle_rad) {
         let cause = if options.measured_in_degrees {
-            cause(true, "--measured-degrees", "", "a measurement")
+            drop("--measured-degrees", "a measurement")
         } else {
-            cause(false, "--planned-degrees", "", "")
+            say("in degrees? then say --planned-degrees")
         };
         format!("the plan of {name} spans 57.3 times the measurement: {cause}")
     } else if plan_rad.min(angle_rad) > TURN_AND_A_HALF_RAD && !options.continuous.iter().any(|c| c == name) {
-        let cause = if stated {
-            "if it turns as far, as of a joint without end stops,".to_owned()
+        let spans = format!("{name} spans {angle_rad:.1} rad in plan and measurement");
+        if stated {
+            format!(
+                "{spans}: if it turns as far, as of a joint without end stops, --continuous {name}; else the unit in its header is wrong"
+            )
         } else {
             format!(
-                "both in degrees? then say --planned-degrees --measured-degrees; or, if it slides, --slides {name}=mm (of a table \
-                 that was imported, import it so); or, if it has no end stops,"
+                "{spans}: both in degrees? then say --planned-degrees --measured-degrees; or, if it slides, --slides {name}=mm (of a table \
+                 that was imported, import it so); or, if it has no end stops, --continuous {name}"
             )
-        };
-        let wrong = if stated { "; else the unit in its header is wrong" } else { "" };
-        format!("{name} spans {angle_rad:.1} rad in plan and measurement: {cause} --continuous {name}{wrong}")
+        }
     } else {
         return;
     };

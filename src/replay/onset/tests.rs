@@ -10,6 +10,22 @@ fn noise(k: u64) -> f64 {
     ((mixed ^ (mixed >> 29)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
+/// By how much the onset of a motion up that crosses a threshold at an instant is found late, s, and whether its interval misses it.
+fn off(t_s: &[f64], position: &[f64], crossing_s: f64, true_s: f64) -> (f64, bool) {
+    let search = Search {
+        segment: 0..t_s.len(),
+        direction: 1,
+        crossing_s,
+        rest_s: 2.9,
+        window_s: 0.1,
+        stop_speed: STOP,
+        sticks: true,
+    };
+    let found = onset(t_s, position, &search, &Rules::default()).unwrap();
+    let [from_s, to_s] = found.interval_s;
+    (found.at_s - true_s, !(from_s - 0.01..=to_s + 0.01).contains(&true_s))
+}
+
 #[test]
 fn the_onset_of_a_joint_that_sinks_at_rest_is_that_of_its_own_speed() {
     let (mut missed, mut late_s) = (0, 0.0_f64);
@@ -27,20 +43,9 @@ fn the_onset_of_a_joint_that_sinks_at_rest_is_that_of_its_own_speed() {
                 })
                 .collect();
             let true_s = leaves_s + (STOP + sinks) / acceleration;
-            let crossing_s = true_s + 0.05;
-            let search = Search {
-                segment: 0..500,
-                direction: 1,
-                crossing_s,
-                rest_s: 2.9,
-                window_s: 0.1,
-                stop_speed: STOP,
-                sticks: true,
-            };
-            let found = onset(&t_s, &position, &search, &Rules::default()).unwrap();
-            let [from_s, to_s] = found.interval_s;
-            missed += usize::from(!(from_s - 0.01..=to_s + 0.01).contains(&true_s));
-            late_s = late_s.max((found.at_s - true_s).abs());
+            let (off_s, misses) = off(&t_s, &position, true_s + 0.05, true_s);
+            missed += usize::from(misses);
+            late_s = late_s.max(off_s.abs());
         }
     }
     assert!(missed <= 4 && late_s < 0.08, "{missed} of 80 intervals missed, {late_s} s off at most");
@@ -72,19 +77,9 @@ fn the_onset_of_what_breaks_away_is_not_that_of_its_first_visible_motion() {
                 position.push(degree * (at + 0.015 * noise(1000 * round + k)));
             }
         }
-        let search = Search {
-            segment: 0..t_s.len(),
-            direction: 1,
-            crossing_s: begins_s,
-            rest_s: 2.9,
-            window_s: 0.1,
-            stop_speed: STOP,
-            sticks: true,
-        };
-        let found = onset(&t_s, &position, &search, &Rules::default()).unwrap();
-        let [from_s, to_s] = found.interval_s;
-        missed += usize::from(!(from_s - 0.01..=to_s + 0.01).contains(&true_s));
-        off_s.push(found.at_s - true_s);
+        let (by_s, misses) = off(&t_s, &position, begins_s, true_s);
+        missed += usize::from(misses);
+        off_s.push(by_s);
     }
     let middle_s = crate::math::median(off_s);
     assert!(

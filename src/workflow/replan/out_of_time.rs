@@ -46,81 +46,8 @@ const INSTANTS: u32 = 150;
 
 /// What is to be said of such a run.
 pub(super) fn out_of_time(run: &Recording) -> Option<(Code, String)> {
-    let sent = &run.command.as_ref()?.series;
-    held(&run.planned, sent).or_else(|| other_pace(&run.planned, sent))
-}
-
-fn held(planned: &Series, sent: &Series) -> Option<(Code, String)> {
-    let [from_s, to_s] = moving_s(planned)?;
-    let both = |plan| Some((plan, sent.track(Track::name(plan))?));
-    let joints: Vec<(&Track, &Track)> = planned.tracks.iter().filter_map(both).collect();
-    let instants = || (0..).map(|k| from_s + STEP_S * f64::from(k)).take_while(|t_s| *t_s <= to_s);
-    let speeds = |track: &Track| -> Vec<f64> {
-        let mut cursor = 0;
-        // In a hole of the log nothing stands.
-        let mut at = |t_s: f64| track.at_after(&mut cursor, t_s).map_or(f64::NAN, |state| state.position);
-        let at: Vec<f64> = instants().map(&mut at).collect();
-        at.windows(2).map(|pair| (pair[1] - pair[0]) / STEP_S).collect()
-    };
-    let speeds: Vec<[Vec<f64>; 2]> =
-        joints.iter().map(|(plan, sent)| [plan, sent].map(|track| speeds(track))).collect();
-    let stands = |k: usize| speeds.iter().all(|[_, sent]| sent[k].abs() * STEP_S < STILL);
-    let steps = speeds.first()?[0].len();
-    let (mut found, mut k) = (Vec::new(), 0);
-    while k < steps {
-        let length = (k..steps).take_while(|k| stands(*k)).count();
-        let end = k + length;
-        let hold = length >= HELD_STEPS && k >= BESIDE_STEPS && end + BESIDE_STEPS <= steps;
-        let goes_on = |(joint, [plan, sent]): (usize, &[Vec<f64>; 2])| {
-            let least = shows(joints[joint].0.kind());
-            let toward = plan[k].signum();
-            let moves = |k: usize| toward * plan[k] > least;
-            let along = |k: usize| toward * sent[k] > GOES_ON * toward * plan[k];
-            (k - BESIDE_STEPS..end + BESIDE_STEPS).all(moves)
-                && (k - BESIDE_STEPS..k - 1).chain(end + 1..end + BESIDE_STEPS).all(along)
-        };
-        if hold && speeds.iter().enumerate().any(goes_on) {
-            found.push((from_s + STEP_S * k as f64, STEP_S * length as f64));
-        }
-        k = end + 1;
-    }
-    let (at_s, lasts_s) = *found.first().filter(|_| found.len() <= MOST_HOLDS)?;
-    let why = format!(
-        "what was sent stands from {at_s:.2} s on for {lasts_s:.1} s while its plan goes on: a hold or an emergency stop"
-    );
-    Some((Code::Paused, why))
-}
-
-fn other_pace(planned: &Series, sent: &Series) -> Option<(Code, String)> {
-    let course = Course::of(planned, sent)?;
-    let about = |middle: f64, step: f64, count: i32| -> Vec<f64> {
-        (-count..=count).map(|k| middle + step * f64::from(k)).collect()
-    };
-    // A correction leads its plan, by a lag of each joint too; none comes late at the end alone.
-    let (leads_s, fine_s) = (about(0.0, LEADS_S, LEADS), about(0.0, 0.2 * LEADS_S, 5 * LEADS));
-    let led = |by_s: &f64| course.left_by_lag([0.0, 1.0], *by_s);
-    let in_time = fine_s.iter().map(led).reduce(f64::min)?;
-    if in_time < (NEAR * course.spread()).powi(2) {
-        return None;
-    }
-    let (way, _) = course.least([0.0, 1.0], &about(1.0, PACE, PACES), &leads_s)?;
-    let (fine, beside_s) = (about(way[0], 0.1 * PACE, 10), about(way[1], 0.2 * LEADS_S, 5));
-    let ([pace, _], at_pace) = course.least([0.0, 1.0], &fine, &beside_s)?;
-    let far_s = about(0.0, 0.5 * LEADS_S, 10 * LEADS);
-    let lead_s = |part| course.least(part, &[1.0], &far_s).map(|([_, by_s], _)| by_s);
-    let [early_s, late_s] = [lead_s([0.0, 1.0 / 3.0])?, -lead_s([2.0 / 3.0, 1.0])?];
-    let longer = pace - 1.0;
-    let behind = if longer > 0.0 { late_s > LATE_S } else { -late_s > AHEAD_S };
-    let apart = longer.signum() * (late_s + early_s) > PACE_S;
-    let inside = (LEAST..PACE * f64::from(PACES)).contains(&longer.abs());
-    let why = || {
-        format!(
-            "what was sent lasts {:.1} % {} than its plan: an override, or the clock of another device",
-            100.0 * longer.abs(),
-            if longer > 0.0 { "longer" } else { "shorter" }
-        )
-    };
-    (behind && apart && inside && at_pace < CLEARLY * in_time).then(|| (Code::Paused, why()))
+    let course = Course::of(&run.planned, &run.command.as_ref()?.series)?;
+    course.held().or_else(|| course.other_pace())
 }
 
 /// A plan and what was sent for it, over the motion of the plan.
@@ -136,6 +63,79 @@ impl<'a> Course<'a> {
         let both = |plan: &'a Track| Some((plan, sent.track(plan.name())?));
         let joints: Vec<_> = planned.tracks.iter().filter_map(both).collect();
         (!joints.is_empty()).then_some(Self { joints, from_s, lasts_s: to_s - from_s })
+    }
+
+    /// What was sent stood for a while, and went on.
+    fn held(&self) -> Option<(Code, String)> {
+        let Self { joints, from_s, lasts_s } = self;
+        let instants =
+            || (0..).map(|k| STEP_S * f64::from(k)).take_while(|t_s| t_s <= lasts_s).map(|t_s| from_s + t_s);
+        let speeds = |track: &Track| -> Vec<f64> {
+            let mut cursor = 0;
+            // In a hole of the log nothing stands.
+            let mut at = |t_s: f64| track.at_after(&mut cursor, t_s).map_or(f64::NAN, |state| state.position);
+            let at: Vec<f64> = instants().map(&mut at).collect();
+            at.windows(2).map(|pair| (pair[1] - pair[0]) / STEP_S).collect()
+        };
+        let speeds: Vec<[Vec<f64>; 2]> =
+            joints.iter().map(|(plan, sent)| [plan, sent].map(|track| speeds(track))).collect();
+        let stands = |k: usize| speeds.iter().all(|[_, sent]| sent[k].abs() * STEP_S < STILL);
+        let steps = speeds.first()?[0].len();
+        let (mut found, mut k) = (Vec::new(), 0);
+        while k < steps {
+            let length = (k..steps).take_while(|k| stands(*k)).count();
+            let end = k + length;
+            let hold = length >= HELD_STEPS && k >= BESIDE_STEPS && end + BESIDE_STEPS <= steps;
+            let goes_on = |(joint, [plan, sent]): (usize, &[Vec<f64>; 2])| {
+                let least = shows(joints[joint].0.kind());
+                let toward = plan[k].signum();
+                let moves = |k: usize| toward * plan[k] > least;
+                let along = |k: usize| toward * sent[k] > GOES_ON * toward * plan[k];
+                (k - BESIDE_STEPS..end + BESIDE_STEPS).all(moves)
+                    && (k - BESIDE_STEPS..k - 1).chain(end + 1..end + BESIDE_STEPS).all(along)
+            };
+            if hold && speeds.iter().enumerate().any(goes_on) {
+                found.push((from_s + STEP_S * k as f64, STEP_S * length as f64));
+            }
+            k = end + 1;
+        }
+        let (at_s, lasts_s) = *found.first().filter(|_| found.len() <= MOST_HOLDS)?;
+        let why = format!(
+            "what was sent stands from {at_s:.2} s on for {lasts_s:.1} s while its plan goes on: a hold or an emergency stop"
+        );
+        Some((Code::Paused, why))
+    }
+
+    /// What was sent took longer than its plan, or less.
+    fn other_pace(&self) -> Option<(Code, String)> {
+        let about = |middle: f64, step: f64, count: i32| -> Vec<f64> {
+            (-count..=count).map(|k| middle + step * f64::from(k)).collect()
+        };
+        // A correction leads its plan, by a lag of each joint too; none comes late at the end alone.
+        let (leads_s, fine_s) = (about(0.0, LEADS_S, LEADS), about(0.0, 0.2 * LEADS_S, 5 * LEADS));
+        let led = |by_s: &f64| self.left_by_lag([0.0, 1.0], *by_s);
+        let in_time = fine_s.iter().map(led).reduce(f64::min)?;
+        if in_time < (NEAR * self.spread()).powi(2) {
+            return None;
+        }
+        let (way, _) = self.least([0.0, 1.0], &about(1.0, PACE, PACES), &leads_s)?;
+        let (fine, beside_s) = (about(way[0], 0.1 * PACE, 10), about(way[1], 0.2 * LEADS_S, 5));
+        let ([pace, _], at_pace) = self.least([0.0, 1.0], &fine, &beside_s)?;
+        let far_s = about(0.0, 0.5 * LEADS_S, 10 * LEADS);
+        let lead_s = |part| self.least(part, &[1.0], &far_s).map(|([_, by_s], _)| by_s);
+        let [early_s, late_s] = [lead_s([0.0, 1.0 / 3.0])?, -lead_s([2.0 / 3.0, 1.0])?];
+        let longer = pace - 1.0;
+        let behind = if longer > 0.0 { late_s > LATE_S } else { -late_s > AHEAD_S };
+        let apart = longer.signum() * (late_s + early_s) > PACE_S;
+        let inside = (LEAST..PACE * f64::from(PACES)).contains(&longer.abs());
+        let why = || {
+            format!(
+                "what was sent lasts {:.1} % {} than its plan: an override, or the clock of another device",
+                100.0 * longer.abs(),
+                if longer > 0.0 { "longer" } else { "shorter" }
+            )
+        };
+        (behind && apart && inside && at_pace < CLEARLY * in_time).then(|| (Code::Paused, why()))
     }
 
     /// Instants of a part of the motion, from 0 to 1, s from its start.
@@ -206,6 +206,14 @@ impl<'a> Course<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn held(plan: &Series, sent: &Series) -> Option<(Code, String)> {
+        Course::of(plan, sent)?.held()
+    }
+
+    fn other_pace(plan: &Series, sent: &Series) -> Option<(Code, String)> {
+        Course::of(plan, sent)?.other_pace()
+    }
 
     fn series(at_s: impl Fn(f64) -> f64) -> Series {
         let step = |t: f64| {
