@@ -1,5 +1,5 @@
-//! Runs in which what was sent stood for a while in motion, or ran at another pace than its plan: what came then is no error of the
-//! machine.
+//! Runs in which what was sent stood for a while in motion, ran at another pace than its plan, or is not logged to its end: what came
+//! then is no error of the machine.
 
 use crate::{
     log::Recording,
@@ -27,6 +27,10 @@ const fn shows(kind: JointKind) -> f64 {
     }
 }
 
+/// A command leads its plan by this at most, s; a plan that moves farther after the end of what was sent goes on, rad or m.
+const LEADS_AT_MOST_S: f64 = 1.0;
+const MISSED: f64 = 0.5 * DEGREE_RAD;
+
 /// What is sent runs at another pace if it is later in the last third of the motion than in the first by so much, s, late or far ahead
 /// there, and the squares of what it is off by are then fewer by this factor than of what leads or lags alone.
 const PACE_S: f64 = 0.1;
@@ -47,7 +51,7 @@ const INSTANTS: u32 = 150;
 /// What is to be said of such a run.
 pub(super) fn out_of_time(run: &Recording) -> Option<(Code, String)> {
     let course = Course::of(&run.planned, &run.command.as_ref()?.series)?;
-    course.held().or_else(|| course.other_pace())
+    course.unlogged().or_else(|| course.held()).or_else(|| course.other_pace())
 }
 
 /// A plan and what was sent for it, over the motion of the plan.
@@ -63,6 +67,24 @@ impl<'a> Course<'a> {
         let both = |plan: &'a Track| Some((plan, sent.track(plan.name())?));
         let joints: Vec<_> = planned.tracks.iter().filter_map(both).collect();
         (!joints.is_empty()).then_some(Self { joints, from_s, lasts_s: to_s - from_s })
+    }
+
+    /// What was sent is not in the log while the plan goes on; one written only where it changes ends before its plan, by a lead.
+    fn unlogged(&self) -> Option<(Code, String)> {
+        let to_s = self.from_s + self.lasts_s;
+        let of = |(plan, sent): &(&Track, &Track)| {
+            let ends_s = *sent.t_s().last()?;
+            let from_s = ends_s + LEADS_AT_MOST_S;
+            let place = |t_s: f64| plan.held_at(t_s).position;
+            let left = self.instants([0.0, 1.0]).map(|t_s| self.from_s + t_s).filter(|t_s| *t_s > from_s);
+            let moved = left.map(|t_s| (place(t_s) - place(from_s)).abs()).fold(0.0, f64::max);
+            (moved > MISSED).then_some(ends_s)
+        };
+        let ends_s = self.joints.iter().filter_map(of).reduce(f64::min)?;
+        let why = format!(
+            "what was sent is logged until {ends_s:.2} s only, while its plan goes on to {to_s:.2} s"
+        );
+        Some((Code::Gap, why))
     }
 
     /// What was sent stood for a while, and went on.
@@ -248,6 +270,17 @@ mod tests {
             let signed = if found.contains("longer") { percent } else { -percent };
             assert!((signed - told).abs() < 0.3, "{pace}: {found}");
         }
+        let until = |s: f64| {
+            let track = |track: &Track| {
+                let n = track.t_s().partition_point(|t_s| *t_s <= s);
+                Track::new(track.name(), track.t_s()[..n].to_vec(), track.position()[..n].to_vec(), &[])
+                    .unwrap()
+            };
+            Series { tracks: plan.tracks.iter().map(track).collect() }
+        };
+        let unlogged = |sent: &Series| Course::of(&plan, sent).unwrap().unlogged();
+        assert!(unlogged(&until(8.0)).is_some_and(|found| found.1.contains("until 8.00 s only")));
+        assert_eq!([unlogged(&until(13.0)), unlogged(&plan)], [None, None]);
         // What a correction does: it leads at starts and comes back where the plan rests.
         let lead = |t: f64| t + 0.25 * (std::f64::consts::PI * ((t - 2.0) / 4.0).clamp(0.0, 1.0)).sin();
         for sent in [series(|t| t), series(|t| t + 0.3), series(lead)] {
