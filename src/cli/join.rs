@@ -64,11 +64,14 @@ impl Run for Args {
                 return Err(CliError::Usage(why.to_owned()));
             }
             let found = gather(&inputs)?;
-            let shown = || words::gathered(&found, &self.output);
+            let shown = || words::gathered(&found, &self.output).reading(&self.read.words());
             return console.answer(self.json, &found, shown, &found.remarks, &[]);
         };
         let joined = run(&inputs)?;
-        let shown = || words::document(&joined, plan, &self.output);
+        let shown = || {
+            words::document(&joined, plan, &self.output)
+                .reading(&self.read.words_of_joined(joined.keeps_plan))
+        };
         console.answer(self.json, &joined, shown, &joined.remarks, &[])
     }
 }

@@ -142,6 +142,12 @@ impl ReadArgs {
         self.words_of(true)
     }
 
+    /// The same for a log that was joined, all of it; unless it keeps its plan that is one of ours.
+    pub(super) fn words_of_joined(&self, keeps_plan: bool) -> Vec<String> {
+        let of_plan = |option: &String| option.starts_with("--planned") && !keeps_plan;
+        self.words_of(false).into_iter().filter(|option| !of_plan(option)).collect()
+    }
+
     fn words_of(&self, ranged: bool) -> Vec<String> {
         let all = |names: &[String]| (!names.is_empty()).then(|| names.join(","));
         let named = |value: Option<PossibleValue>| value.map(|value| value.get_name().to_owned());
@@ -241,6 +247,8 @@ mod tests {
             assert!(EVERY.contains(&format!("--{option}")), "--{option}");
         }
         assert_eq!(read.sent.words_of_next().len() + 4, read.sent.words().len(), "neither ends nor signals");
+        let joined = read.sent.read.words_of_joined(false);
+        assert_eq!(joined.len() + 2, read.sent.words_of_next().len(), "nor the plan: {joined:?}");
     }
 
     #[test]

@@ -19,7 +19,9 @@ pub use paired::{SignedRank, half_interval, signed_rank};
 pub use pieces::{Piece, Pieces, pieces};
 pub use programme::{Columns, quadratic_programme};
 pub use sin_cos::sin_cos;
-pub use statistic::{SIGMA_PER_MAD, deviation, dot, mad, mean, median, quantile, quantile_sorted, range};
+pub use statistic::{
+    SIGMA_PER_MAD, deviation, dot, mad, mean, median, quantile, quantile_sorted, range, usual_step,
+};
 pub use step::{Step, step};
 pub use trend::{
     Trend, begins, column_levels, false_discovery, row_weights, step_scatter, theil_sen, trend,

@@ -56,6 +56,19 @@ pub fn median(values: Vec<f64>) -> f64 {
     quantile(values, 0.5)
 }
 
+/// What one of many steps takes: their median, or, where they come in bursts, their mean; 0 for none.
+pub fn usual_step(steps: &[f64]) -> f64 {
+    const TOGETHER: usize = 25;
+    const BURSTS: f64 = 1.4;
+    if steps.is_empty() {
+        return 0.0;
+    }
+    let one = median(steps.to_vec());
+    // Gaps are in few of them.
+    let several = median(steps.chunks_exact(TOGETHER).map(mean).collect());
+    if several > BURSTS * one { several } else { one }
+}
+
 /// Standard deviation of a normal distribution in units of its median absolute deviation.
 pub const SIGMA_PER_MAD: f64 = 1.4826;
 
@@ -77,6 +90,15 @@ pub(super) fn quantum(values: &[f64]) -> f64 {
 #[expect(clippy::float_cmp, reason = "exact by construction")]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_step_in_a_burst_is_no_usual_one_and_neither_is_a_gap() {
+        let bursts: Vec<f64> = (0..400).map(|k| if k % 5 == 0 { 0.049 } else { 0.000_25 }).collect();
+        assert!((usual_step(&bursts) - 0.01).abs() < 1e-12);
+        let even: Vec<f64> = (0..400).map(|k| if k % 100 == 7 { 60.0 } else { 0.01 }).collect();
+        assert!((usual_step(&even) - 0.01).abs() < 1e-12);
+        assert!((usual_step(&[0.01, 0.02, 9.0]) - 0.02).abs() < 1e-12 && usual_step(&[]) <= 0.0);
+    }
 
     #[test]
     fn a_deviation_is_about_the_mean() {

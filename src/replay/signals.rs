@@ -9,7 +9,7 @@ use super::{
     unrounded::unrounded,
 };
 use crate::{
-    math::median,
+    math::{median, usual_step},
     series::{Noise, Pair, Track, each_local_quadratic, is_sensed, noise, over_window, white},
 };
 
@@ -251,9 +251,8 @@ fn slopes(t_s: &[f64], angle_rad: &[f64], segments: &[Range<usize>], rules: &Rul
     velocity_rad_s
 }
 
-/// Median time between neighbours inside segments, s; 0 where there are none.
+/// Usual time between neighbours inside segments, s; 0 where there are none.
 fn sample_interval_s(pair: &Pair) -> f64 {
     let steps = pair.segments.iter().flat_map(|s| pair.t_s[s.clone()].windows(2).map(|w| w[1] - w[0]));
-    let steps: Vec<f64> = steps.collect();
-    if steps.is_empty() { 0.0 } else { median(steps) }
+    usual_step(&steps.collect::<Vec<_>>())
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::{
-    math::{linear, median},
+    math::{linear, usual_step},
     units::Degrees,
 };
 
@@ -266,9 +266,9 @@ impl Signal {
         self.t_s.len()
     }
 
-    /// Median time between neighbouring samples, s; 0 for a single sample.
+    /// Usual time between neighbouring samples, s; 0 for a single sample.
     pub fn sample_interval_s(&self) -> f64 {
-        if self.len() < 2 { 0.0 } else { median(self.t_s.windows(2).map(|w| w[1] - w[0]).collect()) }
+        usual_step(&self.t_s.windows(2).map(|w| w[1] - w[0]).collect::<Vec<_>>())
     }
 
     /// The first component at a time inside a segment, by a line between samples; `None` between

@@ -162,6 +162,7 @@ mod tests {
         assert_eq!(found("t\ta\tb\n0,0\t1,5\t2\n0,1\t1,6\t2\n"), ("tab".into(), true, 3));
         assert_eq!(found("t a b\n0,0 1,5 2,5\n0,1 1,6 2,5\n"), ("space".into(), true, 3));
         assert_eq!(found("t, a, b\n0.0, 1.5, 2\n0.1, 1.6, 2\n"), ("comma".into(), false, 3));
+        assert_eq!(found("t,a,b\n0.000,0.5,0 1\n0.001,1.5,1 2\n"), ("comma".into(), false, 3));
         assert_eq!(
             found("t;a\n15.06.2025 15:06:40,020;1,5\n15.06.2025 15:06:40,040;1,5\n"),
             ("semicolon".into(), true, 2)

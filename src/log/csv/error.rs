@@ -72,6 +72,13 @@ pub enum CsvError {
          --planned JOINT=COLUMN,... and --measured JOINT=COLUMN,... with the same joints"
     )]
     NoPair { planned: String, measured: String },
+    /// Joints of plan and measurement are counted from different numbers.
+    #[error(
+        "planned columns are of {planned}, measured ones of {measured}: they are counted from different numbers; say which belong together, \
+         such as {}",
+        options.join(" ")
+    )]
+    NumberedApart { planned: String, measured: String, options: Vec<String> },
     /// An interface of a joint that the log does not have.
     #[error("{what} names the joint {joint:?}{}; the joints are {present}", suggestion(nearest.as_deref()))]
     NoJoint { what: String, joint: String, nearest: Option<String>, present: String },
@@ -192,6 +199,9 @@ impl CsvError {
             Self::AngleUnit { .. } => (vec!["--degrees".to_owned()], "reads it if its angles are in degrees"),
             Self::NoTime { by_number, .. } if !by_number.is_empty() => {
                 (by_number.clone(), "reads it if those columns are the right ones")
+            }
+            Self::NumberedApart { options, .. } => {
+                (options.clone(), "reads it if the first of each side belong together")
             }
             Self::NoTime { .. } => {
                 (vec!["--rate HZ".to_owned()], "reads it if a row comes HZ times a second")

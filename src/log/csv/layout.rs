@@ -8,8 +8,9 @@ use super::{
     column::{find, present},
     head::Head,
     label::{Label, is_place},
+    number::number,
     offered::offered,
-    pairing::{Draft, Partners, by_last_part, plan_beside_measured, without_shared_words},
+    pairing::{Draft, Partners, by_last_part, numbered_apart, plan_beside_measured, without_shared_words},
     unit::{Measure, Unit},
 };
 use crate::{
@@ -110,7 +111,7 @@ pub(super) fn lay_out(
         }
     }
     plan_beside_measured(head, &mut drafts, remarks);
-    drop_repeats(head, &mut drafts, remarks)?;
+    drop_repeats(head, labels, &mut drafts, remarks)?;
     without_shared_words(&mut drafts);
     by_last_part(&mut drafts, remarks);
     let joints = joints(head, labels, &drafts, remarks)?;
@@ -215,7 +216,12 @@ fn odd(label: &Label) -> Option<Unit> {
 }
 
 /// Two columns for one thing are an error, unless they say the same.
-fn drop_repeats(head: &Head, drafts: &mut Vec<Draft>, remarks: &mut Remarks) -> Result<(), CsvError> {
+fn drop_repeats(
+    head: &Head,
+    labels: &[Label],
+    drafts: &mut Vec<Draft>,
+    remarks: &mut Remarks,
+) -> Result<(), CsvError> {
     let mut kept: Vec<Draft> = Vec::new();
     for draft in drafts.drain(..) {
         let same = |other: &&Draft| {
@@ -225,7 +231,8 @@ fn drop_repeats(head: &Head, drafts: &mut Vec<Draft>, remarks: &mut Remarks) -> 
             kept.push(draft);
             continue;
         };
-        if head.sample.iter().any(|row| row.get(first.column) != row.get(draft.column)) {
+        let differs = |row: &Vec<Vec<u8>>| row.get(first.column) != row.get(draft.column);
+        if head.sample.iter().any(differs) && !in_another_unit(head, labels, [first.column, draft.column]) {
             let shown = |column: usize| format!("{:?} (#{})", head.names[column], column + 1);
             return Err(CsvError::Twice {
                 columns: format!("{} and {}", shown(first.column), shown(draft.column)),
@@ -244,6 +251,24 @@ fn drop_repeats(head: &Head, drafts: &mut Vec<Draft>, remarks: &mut Remarks) -> 
     }
     *drafts = kept;
     Ok(())
+}
+
+/// Whether two columns say the same in two units: `q1_rad` and `q1_deg`.
+fn in_another_unit(head: &Head, labels: &[Label], columns: [usize; 2]) -> bool {
+    const ROUNDED: f64 = 0.01;
+    let [Some(one), Some(other)] = columns.map(|column| labels[column].unit) else { return false };
+    let read = |row: &Vec<Vec<u8>>, column: usize, unit: Unit| {
+        let cell = row.get(column)?;
+        let value = number(cell, false).or_else(|| number(cell, true))?;
+        Some(value * unit.factor)
+    };
+    let both = |row: &Vec<Vec<u8>>| Some([read(row, columns[0], one)?, read(row, columns[1], other)?]);
+    let pairs: Vec<[f64; 2]> = head.sample.iter().filter_map(both).collect();
+    let most = pairs.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
+    one.measure == other.measure
+        && one != other
+        && most > 0.0
+        && pairs.iter().all(|[a, b]| (a - b).abs() <= ROUNDED * most)
 }
 
 /// Key and name of the joints that have plan and measurement; all of one side if the file has no other.
@@ -290,6 +315,10 @@ fn joints(
             found.extend(sent.iter().filter(both).filter(|draft| !planned(&draft.key)).map(pair));
             if found.is_empty() {
                 return Err(CsvError::NoPair { planned: list(&asked), measured: list(&measured) });
+            }
+            if let Some(options) = numbered_apart(head, [&asked, &measured]) {
+                let (planned, measured) = (list(&asked), list(&measured));
+                return Err(CsvError::NumberedApart { planned, measured, options });
             }
             for draft in asked.iter().chain(&measured).filter(|draft| draft.stated) {
                 if !found.iter().any(|(key, _)| *key == draft.key) {

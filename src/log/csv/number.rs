@@ -136,7 +136,8 @@ pub(super) fn looks(cell: &[u8]) -> Looks {
             }
             let dated = cell.len() >= 8
                 && cell[0].is_ascii_digit()
-                && (has(b':') || !has(b';'))
+                && (has(b':') || !has(b';') && !has(b','))
+                && memchr::memchr_iter(b',', cell).count() < 2
                 && cell.iter().all(|byte| byte.is_ascii_digit() || b" -:./,;TZ+APMUC".contains(byte));
             let named = || std::str::from_utf8(cell).is_ok_and(names_month);
             if dated || named() { Looks::Date } else { Looks::Text }
@@ -214,5 +215,6 @@ mod tests {
         assert_eq!(looks(b"20 mm"), Looks::Whole);
         assert_eq!(looks(b"joint 1"), Looks::Text);
         assert_eq!(looks(b"000;900;1.150"), Looks::Text);
+        assert_eq!(looks(b"0.000,0.5,0.1,0"), Looks::Text);
     }
 }

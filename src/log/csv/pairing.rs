@@ -6,6 +6,7 @@ use super::{Quantity, Role, head::Head, label::Label};
 use crate::{
     log::last_part::{alike, pairs},
     remark::{Code, Remarks},
+    text::shell_word,
 };
 
 /// What a column seems to be.
@@ -153,6 +154,32 @@ pub(super) fn by_last_part(drafts: &mut [Draft], remarks: &mut Remarks) {
         told.join(", ")
     );
     remarks.add(Code::Guessed, told.len() as u64, message);
+}
+
+/// Options that pair plan and measurement in the order of their numbers, if those of one side begin one later than of the other:
+/// `des_q0` to `des_q2` beside `q1` to `q3`. By their names all but one would be paired, and each with its neighbour.
+pub(super) fn numbered_apart(head: &Head, [plan, measured]: [&[&Draft]; 2]) -> Option<Vec<String>> {
+    let numbered = |side: &[&Draft]| {
+        let parts = side.iter().map(|draft| {
+            let name = draft.key.trim_end_matches(|c: char| c.is_ascii_digit());
+            Some((draft.key[name.len()..].parse::<u32>().ok()?, name.to_owned(), draft.column))
+        });
+        let mut parts = parts.collect::<Option<Vec<_>>>()?;
+        parts.sort_unstable();
+        let follows = |two: &[(u32, String, usize)]| two[1].0 == two[0].0 + 1 && two[1].1 == two[0].1;
+        parts.windows(2).all(follows).then_some(parts)
+    };
+    let [plan, measured] = [numbered(plan)?, numbered(measured)?];
+    let apart = plan.len() == measured.len()
+        && plan.len() > 1
+        && plan[0].1 == measured[0].1
+        && plan[0].0.abs_diff(measured[0].0) == 1;
+    let named = |(option, side): (&str, Vec<(u32, String, usize)>)| {
+        let names = side.iter().map(|(.., column)| &head.names[*column]);
+        let pairs = names.enumerate().map(|(k, name)| format!("joint_{}={name}", k + 1));
+        format!("{option} {}", shell_word(&pairs.collect::<Vec<_>>().join(",")))
+    };
+    apart.then(|| [("--planned", plan), ("--measured", measured)].map(named).to_vec())
 }
 
 /// Parts between underscores that all names have.

@@ -11,7 +11,7 @@ use super::{
     time::TimeSource,
 };
 use crate::{
-    math::median,
+    math::usual_step,
     units::{NS_PER_S, seconds_since},
 };
 
@@ -57,7 +57,7 @@ pub struct TimeRead {
     pub first_ns: i64,
     /// From the first to the last sample, s.
     pub duration_s: f64,
-    /// By the median interval, Hz.
+    /// By the usual interval, Hz.
     pub rate_hz: f64,
 }
 
@@ -99,7 +99,7 @@ impl Understood {
         let steps =
             cells.stamp_ns.windows(2).map(|w| seconds_since(w[0], w[1])).filter(|step_s| *step_s > 0.0);
         let steps: Vec<f64> = steps.collect();
-        let rate_hz = if steps.is_empty() { 0.0 } else { 1.0 / median(steps) };
+        let rate_hz = if steps.is_empty() { 0.0 } else { 1.0 / usual_step(&steps) };
         let of = |column: usize, becomes: String, joint: usize| {
             let settled = units.iter().find(|settled| settled.column == column);
             let numbers = cells.columns.get(&column).map_or(0, |column| column.numbers);

@@ -16,16 +16,16 @@ pub(super) enum Meaning {
     Name,
 }
 
-const PLANNED: &str = "expected ideal leader target targets tgt ziel vorgabe demanded requested planned plan desired des reference references ref setpoint setpoints ipo set sp rsol soll sollwert goal nominal nom demand \
+const PLANNED: &str = "expected ideal leader target targets tgt ziel vorgabe demanded requested planned plan desired des reference references ref rpos setp setpoint setpoints ipo set sp rsol soll sollwert goal nominal nom demand \
     wanted consigne trajectory traj fuehrung aspos consigna referencia riferimento alvo ohje ohjearvo börvärde zadana zadane \
     规划 规划值 计划 期望 期望值 目标 目标值 设定 设定值 给定 给定值 参考 参考值 目標 目標値 設定値 목표 목표값 \
     задание задано заданное заданный уставка план";
-const MEASURED: &str = "observed follower actual act rückmeldung rueckmeldung fdbk estimated measured meas feedback fb fbk process present observation ist istwert real sensor encoder enc pv measurement measurements reached rist \
+const MEASURED: &str = "observed follower actual act rückmeldung rueckmeldung fdbk estimated measured meas feedback fb fbk fpos process present observation ist istwert real sensor encoder enc pv measurement measurements reached rist \
     mess messwert ms aipos mesure mesuré mesurée mesuree réel réelle reel reelle medido medida misurato misurata attuale mitattu oloarvo ärvärde \
     zmierzona 实际 实际值 实测 实测值 测量 测量值 反馈 反馈值 当前 当前值 実際 実際値 実測 実測値 現在 現在値 실제 실제값 측정 측정값 \
     факт фактический фактическое текущее измерено измеренное измеренный";
 const COMMAND: &str = "command commands commanded cmd action actions stell stellwert stellgrösse stellgröße kommando kommandiert befehl gesendet sent commande envoyé envoyée envoye envoyee comando comandado 指令 指令值 指令値 命令 명령";
-const POSITION: &str = "q pos position positions posn angle angles winkel lage theta phi posición posicion posizione ángulo \
+const POSITION: &str = "q pos position positions posn ang angle angles winkel lage theta phi posición posicion posizione ángulo \
     angulo angolo kulma vinkel 角度 转角 位置 각도 위치 угол положение";
 const VELOCITY: &str = "qd dq vel velocity velocities velo speed omega geschwindigkeit drehzahl qdot dot vitesse velocidad \
     velocità nopeus hastighet 速度 角速度 转速 속도 скорость";

@@ -2,6 +2,7 @@
 
 use super::{quality::looks_like_degrees, recording::Command};
 use crate::{
+    math::range,
     remark::{Code, Remarks},
     series::{Series, Track},
     text::shell_word,
@@ -47,6 +48,9 @@ type Both = Vec<[f64; 2]>;
 
 /// Remarks joints whose measurement looks like their plan in another frame.
 pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remarks) {
+    if let Some(message) = stands(planned, measured) {
+        remarks.add(Code::UnlikePlan, 1, message);
+    }
     let exchanged = exchanged(planned, measured);
     for [one, other] in &exchanged {
         let message = format!(
@@ -67,6 +71,25 @@ pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remark
             remarks.add(Code::UnlikePlan, 1, message);
         }
     }
+}
+
+/// What is to be said of a plan that stands all the time while a joint goes a long way.
+fn stands(planned: &Series, measured: &Series) -> Option<String> {
+    let moved = |track: &Track| {
+        let [least, most] = range(track.position().iter().copied());
+        (most - least) / SMALL[usize::from(!track.turns())]
+    };
+    let far = measured.tracks.iter().filter(|track| planned.track(track.name()).is_some());
+    let far = far.map(|track| (track, moved(track))).filter(|(_, moved)| *moved > 2.0);
+    let (track, _) = far.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    planned.tracks.iter().all(|plan| moved(plan) < TELLS).then(|| {
+        let [least, most] = range(track.position().iter().copied());
+        format!(
+            "the plan of every joint stands while {} moves by {}: if it is the goal, or of no part of this run, --planned names what              was wanted from moment to moment; `hydrotrace info` lists what the log has",
+            track.name(),
+            track.kind().says(most - least)
+        )
+    })
 }
 
 /// Remarks joints whose command is farther from their plan than that moves: a correction is not, a signal to a valve may be.

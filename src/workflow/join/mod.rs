@@ -1,6 +1,7 @@
 //! `join`: adds the plan to the log of a run that holds command and measurement, or writes the files of one run as one.
 
 mod document;
+mod gain;
 mod gather;
 mod place;
 
@@ -99,6 +100,13 @@ pub enum JoinFailure {
         plan.display(), 100.0 * share
     )]
     SentOtherwise { plan: PathBuf, topic: String, at_s: f64, share: f64 },
+    /// Another command of the same plan was sent.
+    #[error(
+        "what was sent on {topic} is the plan of {} with {:.0} % of the correction of its command: another command of that plan was sent, \
+         such as one of another --gain, and what it promised is another; give the log that was sent",
+        plan.display(), 100.0 * share
+    )]
+    OtherShare { plan: PathBuf, topic: String, share: f64 },
     /// Clocks too far apart.
     #[error(
         "what was sent on {topic} lasts {} than in {} by 3 % or more: no clocks are so far apart; was the plan run at another speed \

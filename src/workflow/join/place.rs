@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::JoinFailure;
+use super::{JoinFailure, gain::other_share};
 use crate::{
     log::{ReadOptions, SignalRole, WantedSignal, read_plan},
     remark::{Code, Remarks},
@@ -70,6 +70,7 @@ impl Plan {
             let longer = found.pace.is_some_and(|pace| pace > 1.0);
             return Err(JoinFailure::OtherPace { plan: path.to_owned(), topic: topic.to_owned(), longer });
         }
+        self.check_share(sent, found.at_s, path, topic)?;
         if let Some(doubt) = doubt(&found, path, topic) {
             remarks.add(Code::SentOtherwise, 1, doubt);
         }
@@ -91,7 +92,7 @@ impl Plan {
             return Ok(());
         };
         if share(&found) <= FITS {
-            return Ok(());
+            return self.check_share(sent, found.at_s, path, topic);
         }
         let at_s = found.at_s + self.span_s()[0];
         Err(JoinFailure::SentOtherwise {
@@ -99,6 +100,16 @@ impl Plan {
             topic: topic.to_owned(),
             at_s,
             share: share(&found),
+        })
+    }
+}
+
+impl Plan {
+    /// Whether what was sent, with the time 0 of the plan at `at_s`, is no other command of the same plan.
+    fn check_share(&self, sent: &Series, at_s: f64, path: &Path, topic: &str) -> Result<(), JoinFailure> {
+        let found = self.command.as_ref().and_then(|own| other_share(&self.planned, own, sent, at_s));
+        found.map_or(Ok(()), |share| {
+            Err(JoinFailure::OtherShare { plan: path.to_owned(), topic: topic.to_owned(), share })
         })
     }
 }

@@ -62,6 +62,50 @@ fn plan_and_measurement_are_paired_by_the_last_part_of_their_names_where_that_is
 }
 
 #[test]
+fn joints_counted_from_0_and_from_1_are_asked_about_with_the_line_that_pairs_them() {
+    let table = two_joints("t,q_des_0_deg,q_des_1_deg,q_meas_1_deg,q_meas_2_deg");
+    let (code, _, error) = import(table.clone(), &[]);
+    assert!(code == 1 && error.contains("counted from different numbers"), "{error}");
+    let (_, options) = error.split_once("such as ").unwrap_or_else(|| panic!("{error}"));
+    let options = options.lines().next().unwrap_or_default();
+    assert_run(table.as_bytes(), options, &["joint_1", "joint_2"]);
+}
+
+#[test]
+fn one_quantity_in_two_units_is_taken_once_and_the_number_of_a_signal_is_no_name() {
+    let degrees = trace("t_s,boom_set_rad,boom_act_rad", 1.0, ",", 1.0);
+    let both: String = degrees
+        .lines()
+        .enumerate()
+        .map(|(k, line)| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let degrees = |cell: &str| cell.parse::<f64>().map_or(0.0, f64::to_degrees);
+            match k {
+                0 => "t_s,boom_set_rad,boom_set_deg,boom_act_rad,boom_act_deg\n".to_owned(),
+                _ => format!(
+                    "{},{},{:.4},{},{:.4}\n",
+                    cells[0],
+                    cells[1],
+                    degrees(cells[1]),
+                    cells[2],
+                    degrees(cells[2])
+                ),
+            }
+        })
+        .collect();
+    let said = assert_run(both.as_bytes(), "", &["boom"]);
+    assert!(said.contains("repeats #2"), "{said}");
+    let other = both.replace("boom_set_deg", "boom_set_gon");
+    let (code, _, error) = import(other, &[]);
+    assert!(code == 1 && error.contains("both look like"), "{error}");
+    assert_run(
+        trace("t_s,[0:0] boom set [rad],[0:1] boom act [rad]", 1.0, ",", 1.0).as_bytes(),
+        "",
+        &["boom"],
+    );
+}
+
+#[test]
 fn lines_may_end_as_on_old_macs() {
     let text = trace("t_s,boom_set_rad,boom_act_rad", 1.0, ",", 1.0).replace('\n', "\r");
     assert_run(text.as_bytes(), "", &["boom"]);
