@@ -254,14 +254,27 @@ pub(crate) fn effect(effect: &Effect, most: usize) -> Document {
         } else {
             format!("; of runs {}, for its level changed by itself beyond", part.join(" and "))
         };
+        let drift = one.drift_per_day.map_or(String::new(), |drift| {
+            format!("; beside {} {unit} a day, before as after", shown_rate(&one.unit, drift))
+        });
         Sentence::finding(format!(
-            "{}: the {} became {became} by {} {unit} ({} {unit}, 95 %), from {} {unit}; {others}{part}; q = {}.",
+            "{}: the {} became {became} by {} {unit} ({} {unit}, 95 %), from {} {unit}; {others}{part}{drift}; q = {}.",
             one.joint,
             name(one.metric),
             shown_change(&one.unit, one.change.abs()).trim_start_matches('+'),
             interval(&one.unit, one.interval_95),
             shown(&one.unit, one.before),
             probability(one.q_value),
+        ))
+    }));
+    let drifting = effect.effects.iter().filter(|one| !one.found && one.drift_per_day.is_some());
+    section = section.with_all(drifting.take(most).map(|one| {
+        Sentence::finding(format!(
+            "{}: the {} changes by {} {} a day, before as after; no effect beside that.",
+            one.joint,
+            name(one.metric),
+            shown_rate(&one.unit, one.drift_per_day.unwrap_or_default()),
+            shown_unit(&one.unit),
         ))
     }));
     if !effect.effects.is_empty() {
@@ -337,6 +350,16 @@ fn verdict(gate: &GateResult, fewest_runs: usize) -> Sentence {
                 worst.joint_and_direction(),
                 probability(q(worst))
             );
+            let shared = gate.shared_per_day.map(|shared| (shared, shown_rate(&worst.unit, shared)));
+            let trend = match shared {
+                Some((growth, shown)) if growth > gate.most_per_day => {
+                    format!("all machines alike grow by {shown} {unit} a day; beside that {trend}")
+                }
+                Some((_, shown)) => {
+                    format!("{trend}, beside up to {shown} {unit} a day that all machines share")
+                }
+                None => trend,
+            };
             match gate.also.as_slice() {
                 [] => trend,
                 also => format!("{trend}; also broken by {}", also.join(", ")),

@@ -226,7 +226,6 @@ fn chart(trend: &JointTrend) -> Chart {
     let y: Vec<f64> = trend.levels.iter().map(|level| rounded(level.value * scale)).collect();
     let names = trend.levels.iter().map(|level| level.log.rsplit('/').next().unwrap_or_default().to_owned());
     let centre = |values: &[f64]| crate::math::median(values.to_vec());
-    let (x0, y0) = (centre(&xs), centre(&y));
     let ends = [xs.first(), xs.last()].map(|x| x.copied().unwrap_or(0.0));
     let room = 0.03 * (ends[1] - ends[0]).max(1.0);
     let step = answers::step_of(trend).and_then(|step| {
@@ -254,11 +253,18 @@ fn chart(trend: &JointTrend) -> Chart {
         (at, line, what.unwrap_or_default())
     };
     let step = if trend.line.is_empty() { step } else { Some(course()) };
+    // A rate is that of the days that it is said of; before, the level stays.
+    let from = (ends[1] - trend.changing_days).clamp(ends[0], ends[1].max(ends[0]));
+    let later: Vec<(f64, f64)> =
+        xs.iter().copied().zip(y.iter().copied()).filter(|(x, _)| *x >= from - 0.5).collect();
+    let (later_x, later_y): (Vec<f64>, Vec<f64>) = later.into_iter().unzip();
+    let (x0, y0) = (centre(&later_x), centre(&later_y));
     let (guide, at, line, what) = step.map_or_else(
         || {
-            let line = ends.map(|x| rounded(y0 + trend.slope_per_day * scale * (x - x0))).to_vec();
+            let at = [ends[0], rounded(from), ends[1]].to_vec();
+            let level = |x: &f64| rounded(y0 + trend.slope_per_day * scale * (x.max(from) - x0));
             let what = format!("{} {} a day", shown_change(unit, trend.slope_per_day), shown_unit(unit));
-            ("slope", ends.to_vec(), line, what)
+            ("slope", at.clone(), at.iter().map(level).collect(), what)
         },
         |(at, line, what)| ("level", at, line, what),
     );

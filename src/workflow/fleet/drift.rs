@@ -94,7 +94,8 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
         .into_iter()
         .filter_map(|joint| {
             let common = commons.at(&joint);
-            joint.less(common).trend()
+            let shared_per_day = common.as_ref().and_then(|common| joint.shared_per_day(common));
+            Some(JointTrend { shared_per_day, ..joint.less(common).trend()? })
         })
         .collect();
     judge(&mut trends);

@@ -86,6 +86,9 @@ pub struct JointEffect {
     /// The last run after that is compared, UTC, where the level changed again after that.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<String>,
+    /// By how much a day its level changed before as after, where it did: that is taken off the change.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift_per_day: Option<f64>,
     /// What the rest of the fleet changed by in the same time, median over machines; null for too few machines.
     pub usual_change: Option<f64>,
     /// Among all machines with this joint, how many changed as much or more, this one included.
@@ -199,12 +202,14 @@ fn joint_effect(
     };
     // What the level was just before and just after.
     let (window, [since, until]) = sides(axis, values, window).at_once(window);
-    let own_sides = sides(axis, values, window);
+    let (own_sides, drift) = sides(axis, values, window).without_drift(true);
     let own = own_sides.change()?;
     let alike = |(other, by): &&(Axis, By)| *by == metric && other.machine != axis.machine;
     // Peak errors of other joints change in proportion.
     let change = |(other, of): (&Axis, &Values)| {
         let found = sides(other, of, window);
+        // What they do by themselves all the time is no measure of what is left here.
+        let found = if drift.is_some() { found.without_drift(false).0 } else { found };
         let same = other.joint == axis.joint && other.unit == axis.unit;
         let scale = if metric == By::Peak && !same { own_sides.level / found.level } else { 1.0 };
         found.change().map(|change| scale * change).filter(|change| change.is_finite())
@@ -221,7 +226,7 @@ fn joint_effect(
     let told = Some(of_same.clone()).filter(|same| same.len() >= FEWEST_OTHERS).or_else(of_joints);
     let usual = told.map(|told| (median(told.clone()), SIGMA_PER_MAD * mad(&told), told.len()));
     let (usual_change, spread, count) = usual.unwrap_or((0.0, 0.0, 1));
-    let error = 1.2533 * spread / (count as f64).sqrt();
+    let error = (1.2533 * spread / (count as f64).sqrt()).hypot(drift.map_or(0.0, |[_, error]| error));
     let found = difference(&own_sides.before, &own_sides.after, (usual_change, error, spread))?;
     let as_much =
         of_same.iter().filter(|other| (*other - usual_change).abs() >= (own - usual_change).abs()).count();
@@ -234,6 +239,7 @@ fn joint_effect(
         interval_95: found.interval,
         since,
         until,
+        drift_per_day: drift.map(|[slope, _]| slope),
         usual_change: usual.map(|(change, ..)| change),
         rank: 1 + as_much,
         of: 1 + of_same.len(),
@@ -246,6 +252,8 @@ fn joint_effect(
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
     use crate::{
         schema::is_written_and_read,
@@ -295,6 +303,42 @@ mod tests {
         assert!((boom.usual_change.unwrap() + 1.0).abs() < 0.2 && (boom.rank, boom.of) == (1, 6), "{boom:?}");
         let stick = of("stick");
         assert!(stick.change.abs() < 0.2 && stick.p_value > 0.05, "{stick:?}");
+    }
+
+    #[test]
+    fn a_drift_that_goes_on_is_no_effect_and_what_came_beside_it_is() {
+        let of = |jump: f64| {
+            let mut history = history();
+            for ((axis, _), values) in &mut history.values {
+                let own = axis.machine == "M0" && axis.joint == "stick";
+                for (run, value) in values.values_mut().flatten().filter(|_| own) {
+                    let day = (*run / 6) as f64;
+                    *value += 0.5 * day + if day >= 5.0 { jump } else { 0.0 };
+                }
+            }
+            let found =
+                history.values.iter().find(|((axis, _), _)| axis.machine == "M0" && axis.joint == "stick");
+            let ((axis, metric), values) = found.unwrap();
+            joint_effect(&history, axis, *metric, values, window()).unwrap()
+        };
+        let none = of(0.0);
+        assert!(none.change.abs() < 0.1 && none.p_value > 0.05, "{none:?}");
+        assert!((none.drift_per_day.unwrap() - 0.5).abs() < 0.02, "{none:?}");
+        let some = of(2.0);
+        assert!((some.change - 2.0).abs() < 0.1 && some.p_value < 1e-3, "{some:?}");
+        // One that all machines share.
+        let mut history = history();
+        for of_run in history.values.values_mut().flat_map(BTreeMap::values_mut) {
+            for (run, value) in of_run {
+                *value += 0.5 * (*run / 6) as f64;
+            }
+        }
+        for ((axis, metric), values) in &history.values {
+            if axis.joint == "stick" {
+                let found = joint_effect(&history, axis, *metric, values, window()).unwrap();
+                assert!(found.change.abs() < 0.2 && found.p_value > 0.01, "{found:?}");
+            }
+        }
     }
 
     #[test]

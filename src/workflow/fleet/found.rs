@@ -52,13 +52,15 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
         trend.q_value = q_trend[k];
         let usual = tell[k] && trend.stands_out.is_some_and(|out| out < STANDS_OUT);
         let least = RELEVANT * trend.level.abs();
-        let drifts =
-            trend.q_value < MOST_FALSE && !usual && (trend.slope_per_day * trend.days).abs() >= least;
+        let drifts = trend.q_value < MOST_FALSE
+            && !usual
+            && (trend.slope_per_day * trend.changing_days).abs() >= least;
         if let Some(step) = &mut trend.step {
             step.q_value = q_step[k];
             let beyond = beyond(step.change, step.interval_95, least, elsewhere[k]);
             let steps = step.q_value < MOST_FALSE && step.change.abs() >= least && beyond;
-            trend.is_step = steps && (!drifts || step.left < 1.0);
+            // What a drift explains nearly as well is one: its growth a day is the smaller claim.
+            trend.is_step = steps && (!drifts || step.is_sure());
             if trend.is_step {
                 trend.since.clone_from(&step.by);
             }
@@ -252,6 +254,7 @@ mod tests {
                 step: best_step(&points),
                 course: course(&points),
                 days: f64::from(days),
+                changing_days: f64::from(days),
                 level: 2.4,
                 levels: points.iter().map(level).collect(),
                 ..JointTrend::default()
@@ -310,6 +313,7 @@ mod tests {
                 slope_per_day: theil_sen(&points),
                 p_value: if days < 20 { 1e-9 } else { 0.5 },
                 days: f64::from(days),
+                changing_days: f64::from(days),
                 level: 10.0,
                 levels,
                 ..JointTrend::default()

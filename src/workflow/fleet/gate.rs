@@ -64,6 +64,10 @@ pub struct GateResult {
     pub broken_by: usize,
     /// The fastest growth among the joints that break the limit, else among all; null if there was nothing to judge.
     pub worst: Option<JointTrend>,
+    /// By how much a day all machines change alike, where that is taken off the growth of each: the most of the joints judged. More than
+    /// the limit breaks it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shared_per_day: Option<f64>,
     /// The other joints that break the limit, the fastest first: machine, and joint with its direction.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub also: Vec<String>,
@@ -107,23 +111,28 @@ fn judged(gate: &Gate, found: &Drift, empty_is_kept: bool) -> GateResult {
         let of_gate = |trend: &&JointTrend| trend.metric == gate.metric && trend.unit == gate.unit;
         found.trends.iter().filter(of_gate).filter(|trend| is_judged(trend, found))
     };
-    let breaks = |trend: &&JointTrend| trend.found && trend.growth_per_day() > gate.most_per_day;
+    // What all share, it does, too.
+    let whole = |trend: &JointTrend| trend.growth_per_day() + trend.shared_per_day.unwrap_or(0.0).max(0.0);
+    let breaks = |trend: &&JointTrend| trend.found && whole(trend) > gate.most_per_day;
     let fastest = |a: &&JointTrend, b: &&JointTrend| a.growth_per_day().total_cmp(&b.growth_per_day());
     let (judged, broken_by) = (own().count(), own().filter(breaks).count());
     let mut breaking: Vec<&JointTrend> = own().filter(breaks).collect();
     breaking.sort_by(|a, b| fastest(b, a));
     let worst = breaking.first().copied().or_else(|| own().max_by(fastest));
+    let shared_per_day = own().filter_map(|trend| trend.shared_per_day).reduce(f64::max);
+    let all_grow = shared_per_day.is_some_and(|growth| growth > gate.most_per_day);
     let also =
         breaking.iter().skip(1).map(|trend| format!("{} {}", trend.machine, trend.joint_and_direction()));
     GateResult {
         also: also.collect(),
+        shared_per_day,
         metric: gate.metric,
         unit: gate.unit.clone(),
         most_per_day: gate.most_per_day,
         judged,
         broken_by,
         worst: worst.cloned(),
-        kept: broken_by == 0 && (judged > 0 || empty_is_kept),
+        kept: broken_by == 0 && !all_grow && (judged > 0 || empty_is_kept),
     }
 }
 

@@ -33,8 +33,8 @@ pub struct JointTrend {
     pub metric: By,
     /// Its unit: "s" of delays and lags, else that of the joint, "rad" or "m".
     pub unit: String,
-    /// Change a day, median over the starts of each start's Theil-Sen slope, weighted by one over the square of its scatter; with
-    /// [`Self::changes`] that of the last stretch.
+    /// Change a day from [`Self::since`] on, median over the starts of each start's Theil-Sen slope, weighted by one over the square of
+    /// its scatter; with [`Self::changes`] that of the last stretch.
     pub slope_per_day: f64,
     /// Its 95 % interval, by Kendall's test on the levels of the runs.
     pub interval_95: [f64; 2],
@@ -60,6 +60,12 @@ pub struct JointTrend {
     /// Whether what the other machines did at the same time is taken off the levels.
     #[serde(default)]
     pub less_common: bool,
+    /// By how much a day the other machines changed alike, which is taken off; null where that is not known, or may be chance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shared_per_day: Option<f64>,
+    /// From the day on that it begins to the last run, days: those that the slope is of.
+    #[serde(default)]
+    pub changing_days: f64,
     /// What the level did, before it is judged.
     #[serde(skip)]
     pub(super) course: Option<Course>,

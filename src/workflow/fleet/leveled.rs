@@ -139,6 +139,14 @@ impl Leveled {
         })
     }
 
+    /// The slope of what the other machines did at the instants of the levels, where it is hardly chance.
+    pub(super) fn shared_per_day(&self, common: &[f64]) -> Option<f64> {
+        const CHANCE: f64 = 0.01;
+        let at = self.levels.iter().map(|level| level.0);
+        let found = trend(&at.zip(common.iter().copied()).collect::<Vec<_>>())?;
+        (found.p < CHANCE).then_some(found.slope)
+    }
+
     /// Less what the other machines did at the same instants.
     pub(super) fn less(mut self, common: Option<Vec<f64>>) -> Self {
         let Some(common) = common.filter(|common| common.len() == self.levels.len()) else { return self };
@@ -158,9 +166,18 @@ impl Leveled {
     /// Its trend; `None` where all runs are of one instant.
     pub(super) fn trend(&self) -> Option<JointTrend> {
         let Self { rows, weights, levels, at_days, .. } = self;
-        let slopes = rows.iter().map(|row| theil_sen(&points(at_days, row))).zip(weights.iter().copied());
-        let slope = weighted_median(slopes.collect());
-        let found = trend(levels).filter(|_| slope.is_finite())?;
+        let whole = trend(levels)?;
+        let first = levels.first()?.0;
+        // A rate is that of the days that it is said of.
+        let since = |from: &f64| levels.iter().filter(|(at, _)| at >= from).copied().collect::<Vec<_>>();
+        let begins = begins(levels).filter(|from| since(from).len() >= FEWEST_RUNS).unwrap_or(first);
+        let found = trend(&since(&begins))?;
+        let of_row = |row: &Vec<f64>| {
+            let later: Vec<(f64, f64)> =
+                points(at_days, row).into_iter().filter(|(at, _)| *at >= begins).collect();
+            theil_sen(&later)
+        };
+        let slope = weighted_median(rows.iter().map(of_row).zip(weights.iter().copied()).collect());
         let [low, high] = found.interval;
         // The levels that are known for fewer days than the starts are tell another slope.
         let slope = if (low..=high).contains(&slope) { slope } else { found.slope };
@@ -179,15 +196,16 @@ impl Leveled {
             unit: self.unit.clone(),
             slope_per_day: slope,
             interval_95: [low, high],
-            p_value: found.p,
+            p_value: whole.p,
             q_value: 1.0,
             step: best_step(levels),
             course: course(&levels.iter().map(|(at, level)| (*at, level + self.usual)).collect::<Vec<_>>()),
             less_common: self.less_common,
-            since: begins(levels).and_then(date),
+            since: date(begins),
             starts: rows.len(),
             runs: levels.len(),
             days: levels.last()?.0 - levels.first()?.0,
+            changing_days: levels.last()?.0 - begins,
             level: median(early.collect()),
             levels: levels.iter().map(level).collect(),
             ..JointTrend::default()

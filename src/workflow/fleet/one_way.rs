@@ -33,7 +33,8 @@ fn change(trend: &JointTrend, jumps: bool) -> Option<(f64, [f64; 2])> {
     if jumps {
         return trend.step.as_ref().map(|step| (step.change, step.interval_95));
     }
-    Some((trend.slope_per_day * trend.days, trend.interval_95.map(|slope| slope * trend.days)))
+    let days = trend.changing_days;
+    Some((trend.slope_per_day * days, trend.interval_95.map(|slope| slope * days)))
 }
 
 /// Whether another change is less than half as large, and surely less.

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use statrs::distribution::{ContinuousCDF as _, StudentsT};
+
 use super::{
     history::{By, History, Scatters, Values},
     joint_trend::FEWEST_OF_A_SIDE,
@@ -10,12 +12,13 @@ use super::{
     window::Window,
 };
 use crate::{
-    math::{column_levels, median, pieces},
+    math::{column_levels, mean, median, pieces},
     units::SECONDS_PER_DAY,
 };
 
 /// A level that changes by itself by chance with a smaller probability does so.
 const SURELY: f64 = 0.01;
+const VERY_SURELY: f64 = 1e-4;
 
 /// Levels of the runs of one machine before and after, and the median value before.
 pub(super) struct Sides {
@@ -62,8 +65,50 @@ impl Sides {
     }
 
     pub(super) fn change(&self) -> Option<f64> {
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         (self.before.len() >= 2 && self.after.len() >= 2).then(|| mean(&self.after) - mean(&self.before))
+    }
+
+    /// The same without a drift that goes on before as after: what is left is what changed at once. With that drift a day and what its error
+    /// makes of the change. Where it is `asked` for, only if it is sure, and makes the change smaller or is very sure: the steepest slope of
+    /// many by chance would be taken for one.
+    pub(super) fn without_drift(self, asked: bool) -> (Self, Option<[f64; 2]>) {
+        let days = self
+            .at_us
+            .each_ref()
+            .map(|side| side.iter().map(|us| *us as f64 / 1e6 / SECONDS_PER_DAY).collect::<Vec<f64>>());
+        let sides = [&self.before, &self.after];
+        let (mut square, mut product, mut total) = (0.0, 0.0, 0.0);
+        for (days, levels) in days.iter().zip(sides) {
+            let (day, level) = (mean(days), mean(levels));
+            for (at, value) in days.iter().zip(levels) {
+                square += (at - day).powi(2);
+                product += (at - day) * (value - level);
+                total += (value - level).powi(2);
+            }
+        }
+        let freedom = (self.before.len() + self.after.len()) as f64 - 3.0;
+        if freedom < 3.0 || square <= 0.0 {
+            return (self, None);
+        }
+        let slope = product / square;
+        let error = ((total - slope * product).max(0.0) / freedom / square).sqrt();
+        let chance = |t: StudentsT| if error > 0.0 { 2.0 * t.cdf(-(slope / error).abs()) } else { 0.0 };
+        let p = StudentsT::new(0.0, 1.0, freedom).map_or(1.0, chance);
+        let apart_days = mean(&days[1]) - mean(&days[0]);
+        let change = mean(&self.after) - mean(&self.before);
+        let smaller = (change - slope * apart_days).abs() < change.abs();
+        let surely = !asked || p < VERY_SURELY || p < SURELY && smaller;
+        let last = days[0].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let first = days[1].iter().copied().fold(f64::INFINITY, f64::min);
+        let at = 0.5 * (last + first);
+        if !surely || !at.is_finite() {
+            return (self, None);
+        }
+        let level = |levels: &[f64], days: &[f64]| {
+            levels.iter().zip(days).map(|(level, day)| level - slope * (day - at)).collect()
+        };
+        let (before, after) = (level(&self.before, &days[0]), level(&self.after, &days[1]));
+        (Self { before, after, ..self }, Some([slope, error * apart_days]))
     }
 
     /// The window narrowed to what the level was just before and just after, where it changed earlier or later by itself, and the
