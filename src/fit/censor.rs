@@ -3,8 +3,10 @@
 use super::{
     estimate::{Estimate, Problem, Workspace},
     interval::{QUANTILE, discrepancy::LIMIT},
+    model::STEP_S,
     parameters::{LIMITS, Priors, SHARED},
     robust::{cost, inefficiency},
+    run::{Run, Sample},
 };
 
 /// 95 % quantile of a chi-squared variable with one degree of freedom.
@@ -27,6 +29,71 @@ fn fastest(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> [f
     })
 }
 
+/// A speed is a limit if the joint kept this share of it over the time that it takes to that speed and from it, on average: one that
+/// only accelerates and brakes as hard as it can keeps three quarters of its highest.
+const KEPT: f64 = 0.94;
+/// What a limit gains, as [`THRESHOLD`] is meant, that the model keeps it all the same, though it is not told.
+const SURELY: f64 = 100.0;
+/// Shortest and longest time over which that is asked, s.
+const KEPT_OVER_S: [f64; 2] = [0.2, 2.0];
+
+/// Largest mean speed over a time, growing for `way` 1 and shrinking for -1, rad/s.
+fn sustained_rad_s(runs: &[Run], way: f64, over_s: f64) -> f64 {
+    let at_s = |sample: &Sample| (sample.step as f64 + sample.part) * STEP_S;
+    let mut most = 0.0_f64;
+    for run in runs {
+        let mut later = 0;
+        for sample in &run.samples {
+            let until_s = at_s(sample) + over_s;
+            while run.samples.get(later).is_some_and(|later| at_s(later) < until_s) {
+                later += 1;
+            }
+            let Some(end) = run.samples.get(later) else { break };
+            let lasts_s = at_s(end) - at_s(sample);
+            if lasts_s < 1.5 * over_s {
+                most = most.max(way * (end.measured_rad - sample.measured_rad) / lasts_s);
+            }
+        }
+    }
+    most
+}
+
+/// Largest speed of which a joint makes both halves of a time, rad/s: what jumps there and back makes one.
+pub(super) fn steady_rad_s(runs: &[Run], way: f64, over_s: f64) -> f64 {
+    let at_s = |sample: &Sample| (sample.step as f64 + sample.part) * STEP_S;
+    let mut most = 0.0_f64;
+    for run in runs {
+        let after = |sample: &Sample, by_s: f64| {
+            let until_s = at_s(sample) + by_s;
+            let later = run.samples.partition_point(|later| at_s(later) < until_s);
+            run.samples.get(later).filter(|later| at_s(later) - at_s(sample) < 1.5 * by_s)
+        };
+        let speed = |a: &Sample, b: &Sample| way * (b.measured_rad - a.measured_rad) / (at_s(b) - at_s(a));
+        for sample in &run.samples {
+            let Some(middle) = after(sample, 0.5 * over_s) else { continue };
+            let Some(end) = after(middle, 0.5 * over_s) else { continue };
+            most = most.max(speed(sample, middle).min(speed(middle, end)));
+        }
+    }
+    most
+}
+
+/// Whether the joint kept its speed limits, growing and shrinking, for more than a moment between accelerations that are limited, as
+/// `shown` says; without such accelerations that is not asked.
+pub(super) fn sustained(problem: &Problem, x: &[f64], shown: [bool; 4]) -> [bool; 2] {
+    let value = |limit: usize| problem.priors.of(LIMITS + limit).value(x[LIMITS + limit]);
+    let rates: Vec<f64> = [2, 3].into_iter().filter(|limit| shown[*limit]).map(value).collect();
+    if rates.is_empty() {
+        return [true; 2];
+    }
+    let rate_s = rates.iter().map(|rate| rate.recip()).sum::<f64>() / rates.len() as f64;
+    [(0, 1.0), (1, -1.0)].map(|(limit, way)| {
+        let speed_rad_s = value(limit);
+        let over_s = (speed_rad_s * rate_s).clamp(KEPT_OVER_S[0], KEPT_OVER_S[1]);
+        sustained_rad_s(problem.runs, way, over_s) >= KEPT * speed_rad_s
+    })
+}
+
 /// Which of the limits the data show.
 ///
 /// The cost without a limit must exceed the cost with it by more than chance; both are divided by the statistical
@@ -43,23 +110,27 @@ pub(super) fn seen(
     problem.residuals(&found.x, workspace, &mut residuals);
     let (with, kappa) = (data(&residuals), inefficiency(&residuals));
     let unlimited = fastest(problem, found, workspace);
-    let mut seen = problem.shown.limits;
+    let (mut seen, mut gains) = (problem.shown.limits, [0.0; 4]);
     for limit in (0..problem.shown.limits.len()).filter(|&limit| problem.shown.limits[limit]) {
         let mut without = problem.clone();
         without.shown.limits[limit] = false;
         without.residuals(&found.x, workspace, &mut residuals);
-        let mut shows = 2.0 * (data(&residuals) - with) / kappa > THRESHOLD;
-        if shows {
+        gains[limit] = 2.0 * (data(&residuals) - with) / kappa;
+        if gains[limit] > THRESHOLD {
             let refitted = without.descend(found.x.clone(), 10, workspace);
             without.residuals(&refitted.x, workspace, &mut residuals);
-            shows = 2.0 * (data(&residuals) - with) / kappa > THRESHOLD;
+            gains[limit] = 2.0 * (data(&residuals) - with) / kappa;
         }
+        let shows = gains[limit] > THRESHOLD;
         let value = problem.priors.of(LIMITS + limit).value(found.x[LIMITS + limit]);
         let sent = problem.runs.iter().map(|run| run.asked[limit]).fold(0.0, f64::max);
         // What the loop makes of what is sent may be slower than that.
         let asked = unlimited.get(limit).map_or(sent, |speed| sent.min(*speed));
         let highest = value * (QUANTILE * LIMIT[limit]).exp();
         seen[limit] &= shows && asked > ASKED * value && highest >= reached[limit];
+    }
+    for (limit, kept) in sustained(problem, &found.x, seen).into_iter().enumerate() {
+        seen[limit] &= kept || gains[limit] > SURELY;
     }
     seen
 }

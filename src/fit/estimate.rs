@@ -9,7 +9,7 @@ use super::{
     run::{ASKED_OVER_S, Run, Sample, steps_in},
     simulate::{LANES, Start, simulate, simulate_lanes},
 };
-use crate::units::DEGREE_RAD;
+use crate::{math::deviation, units::DEGREE_RAD};
 
 /// Step of the differences, prior deviations.
 const DIFFERENCE: f64 = 1e-3;
@@ -127,6 +127,19 @@ impl Problem<'_> {
         let mut residuals = Vec::new();
         self.residuals(x, workspace, &mut residuals);
         inefficiency(&residuals)
+    }
+
+    /// Share of the squared tracking error, sent less measured about its mean, that is left at `x`.
+    pub(super) fn leaves(&self, x: &[f64], workspace: &mut Workspace) -> f64 {
+        let mut residuals = Vec::new();
+        self.residuals(x, workspace, &mut residuals);
+        let squares = residuals.iter().map(|left| left * left).sum::<f64>();
+        let error_rad = |run: &Run| -> Vec<f64> {
+            let counted = run.samples.iter().filter(|sample| self.part.has(sample));
+            counted.map(|sample| run.sent_rad(sample) - sample.measured_rad).collect()
+        };
+        let errors: Vec<f64> = self.runs.iter().flat_map(error_rad).collect();
+        squares / (errors.len() as f64 * deviation(&errors).powi(2)).max(f64::MIN_POSITIVE)
     }
 
     /// Cost of residuals at a scale, with the priors' part.

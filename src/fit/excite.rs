@@ -47,7 +47,7 @@ fn scale(kind: JointKind) -> f64 {
     }
 }
 /// A stroke takes this long to its speed, and from it, s.
-const RAMP_S: f64 = 0.12;
+pub const RAMP_S: f64 = 0.12;
 /// Points a second of the trajectory that strokes are made for: the cubic curve through these is the strokes themselves.
 pub const STROKE_POINTS_HZ: f64 = 25.0;
 const POINT_S: f64 = 1.0 / STROKE_POINTS_HZ;
@@ -74,6 +74,13 @@ impl JointRoom {
     pub fn turning(name: impl Into<String>, home_rad: f64, range_rad: [f64; 2]) -> Self {
         let (name, kind) = (name.into(), JointKind::Turns);
         Self { name, kind, home_rad, range_rad, most_rad_s: f64::INFINITY }
+    }
+}
+
+impl Ramp {
+    /// The speed of its strokes across both sides, rad/s: in times that are those of points, a little less than asked for.
+    pub fn sent_rad_s(&self) -> f64 {
+        top_rad_s(2.0 * self.travel_rad, self.speed_rad_s).0
     }
 }
 
@@ -235,6 +242,13 @@ fn joint_strokes(joint: &JointRoom, excitation: &Excitation) -> Result<Vec<(f64,
     Ok(states)
 }
 
+/// The speed of a stroke, of the sign of its way, and how long it has it, s.
+fn top_rad_s(way: f64, speed_rad_s: f64) -> (f64, f64) {
+    let cruise_s = (way.abs() / speed_rad_s - RAMP_S).max(0.0);
+    let cruise_s = (cruise_s / POINT_S - 1e-6).ceil().max(0.0) * POINT_S;
+    (way / (RAMP_S + cruise_s), cruise_s)
+}
+
 /// One stroke and the rest after it. Its speed grows and falls evenly, in times that are those of the points of a trajectory:
 /// the cubic curve through them, which controllers follow, is the stroke itself.
 fn stroke(
@@ -244,9 +258,8 @@ fn stroke(
     states: &mut Vec<(f64, f64)>,
 ) {
     let way = goal - from;
-    let cruise_s = (way.abs() / speed_rad_s - RAMP_S).max(0.0);
-    let cruise_s = (cruise_s / POINT_S - 1e-6).ceil().max(0.0) * POINT_S;
-    let (end_s, top_rad_s) = (2.0 * RAMP_S + cruise_s, way / (RAMP_S + cruise_s));
+    let (top_rad_s, cruise_s) = top_rad_s(way, speed_rad_s);
+    let end_s = 2.0 * RAMP_S + cruise_s;
     let needed_s = way.abs() / speed_rad_s.min(assumed_rad_s);
     let steps = steps_in(needed_s.max(end_s) + dwell_s).next_multiple_of(steps_in(POINT_S));
     for k in 0..steps {

@@ -2,7 +2,7 @@
 
 use super::{
     Character, Estimated, HeldOut, Oscillation,
-    censor::{ASKED, seen},
+    censor::{ASKED, seen, sustained},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
     integral,
@@ -11,7 +11,7 @@ use super::{
     parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
     run::{Run, Sample},
     set_values::SetValues,
-    skill::{HeldOutStart, Skill, sent_rad, skill, unexplained_rad},
+    skill::{HeldOutStart, Skill, skill, unexplained_rad},
     telling::{of, telling},
 };
 use crate::{
@@ -22,6 +22,10 @@ use crate::{
 
 /// Dead times to start from, s.
 const DEAD_TIMES_S: [f64; 3] = [0.08, 0.2, 0.35];
+
+/// Share of the squared tracking error that a fit to several logs leaves, from which on what fits one of them is tried, too, for so many.
+const WELL: f64 = 0.004;
+const TRIED_LOGS: usize = 3;
 
 /// A limit is looked for from this far above what was reached.
 const ABOVE: [f64; 4] = [1.1, 1.1, 1.2, 1.2];
@@ -65,12 +69,13 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         inefficiency: INEFFICIENCY,
     };
     let mut workspace = Workspace::default();
-    let from = DEAD_TIMES_S.map(|dead_time_s| {
-        let mut x = vec![0.0; SHARED + some.len()];
-        x[DEAD_TIME] = priors.of(DEAD_TIME).place(dead_time_s);
-        x
-    });
-    let mut found = problem.search(from, &mut workspace);
+    let mut found = problem.search(starts(&problem), &mut workspace);
+    if problem.leaves(&found.x, &mut workspace) > WELL {
+        let others = of_each_log(&problem, &mut workspace);
+        if !others.is_empty() {
+            found = problem.search(others.into_iter().chain([found.x]), &mut workspace);
+        }
+    }
     // What goes may have stood in for what stays.
     for _ in 0..2 {
         problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);
@@ -136,6 +141,33 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     (joint, ratios, stretches)
 }
 
+/// Places to search from.
+fn starts(problem: &Problem) -> [Vec<f64>; DEAD_TIMES_S.len()] {
+    DEAD_TIMES_S.map(|dead_time_s| {
+        let mut x = vec![0.0; SHARED + problem.runs.len()];
+        x[DEAD_TIME] = problem.priors.of(DEAD_TIME).place(dead_time_s);
+        x
+    })
+}
+
+/// What fits the first of several logs alone.
+fn of_each_log(problem: &Problem, workspace: &mut Workspace) -> Vec<Vec<f64>> {
+    let mut logs: Vec<usize> = problem.runs.iter().map(|run| run.log).collect();
+    logs.dedup();
+    if logs.len() < 2 {
+        return Vec::new();
+    }
+    let alone = |log: &usize| {
+        let runs: Vec<Run> = problem.runs.iter().filter(|run| run.log == *log).cloned().collect();
+        let own = Problem { runs: &runs, ..problem.clone() };
+        let mut x = own.search(starts(&own), workspace).x;
+        x.truncate(SHARED);
+        x.resize(SHARED + problem.runs.len(), 0.0);
+        x
+    };
+    logs.iter().take(TRIED_LOGS).map(alone).collect()
+}
+
 /// Whether the joint stands though it is sent elsewhere: what a model then predicts is the plan, not the joint.
 fn stands(runs: &[Run]) -> bool {
     // By run, for a joint that stands elsewhere in the next one did not move in it either.
@@ -144,7 +176,7 @@ fn stands(runs: &[Run]) -> bool {
             |run: &Run| deviation(&run.samples.iter().map(|sample| of(run, sample)).collect::<Vec<f64>>());
         runs.iter().map(|run| own(run).powi(2)).sum()
     };
-    squares_rad2(&|_, sample| sample.measured_rad) < STANDS * STANDS * squares_rad2(&sent_rad)
+    squares_rad2(&|_, sample| sample.measured_rad) < STANDS * STANDS * squares_rad2(&Run::sent_rad)
 }
 
 /// Limits that were asked for far enough to show; looking for others costs time.
@@ -165,9 +197,10 @@ fn report(
     let one = |i: usize, value: f64, discrepancy: f64| {
         knowledge.positive(value, &[(i, problem.priors.of(i).deviation)], discrepancy)
     };
+    let told = sustained(problem, &found.x, problem.shown.limits);
     let limit = |i: usize| {
         let bound = Some(reached[i]);
-        if problem.shown.limits[i] {
+        if problem.shown.limits[i] && told.get(i).is_none_or(|told| *told) {
             let value = problem.priors.of(LIMITS + i).value(found.x[LIMITS + i]);
             Estimated { lower_bound: bound, ..one(LIMITS + i, value, discrepancy::LIMIT[i]) }
         } else {

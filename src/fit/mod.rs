@@ -40,7 +40,7 @@ mod valve;
 
 pub use error::FitError;
 pub use estimated::Estimated;
-pub use excite::{Excitation, JointRoom, Ramp, STROKE_POINTS_HZ, excite};
+pub use excite::{Excitation, JointRoom, RAMP_S, Ramp, STROKE_POINTS_HZ, excite};
 pub use excited::is_excitation;
 pub use held_out::HeldOut;
 pub use learn::{
@@ -75,7 +75,8 @@ pub fn fit(logs: &[Observation]) -> Result<Fit, FitError> {
 
 impl Fit {
     /// The same, with what its models leave unexplained in these runs weighed against what is known: `left` gets what was held out
-    /// of the fit, if anything, and what is found here, mean and 0.9 quantile of peaks, rad.
+    /// of the fit, if anything, and what is found here, mean and 0.9 quantile of peaks, rad. A speed limit that a joint is beyond in them
+    /// is none.
     #[must_use]
     pub fn held_against(
         mut self,
@@ -88,9 +89,14 @@ impl Fit {
                 Some(runs(log.sent.track(&joint.name)?, log.measured.track(&joint.name)?))
             };
             let runs: Vec<Run> = logs.iter().filter_map(of_log).flatten().collect();
-            let (known, found) =
-                (joint.unexplained_peak_rad, skill::unexplained_by(&joint.model, &runs, &mut workspace));
+            // A joint that stood elsewhere left all of its way there, which says nothing of these runs.
+            let fewest = if joint.trusted() { skill::FEWEST } else { 1 };
+            let found = skill::unexplained_by(&joint.model, &runs, fewest, &mut workspace);
+            let known = joint.unexplained_peak_rad;
             joint.unexplained_peak_rad = found.map(|found| left(known, found)).or(known);
+            for (way, sign) in [1.0, -1.0].into_iter().enumerate() {
+                joint.has_reached(way, censor::steady_rad_s(&runs, sign, run::REACHED_OVER_S));
+            }
         }
         self
     }

@@ -189,6 +189,22 @@ impl JointFit {
         }
     }
 
+    /// Takes in that a speed was reached, growing for `way` 0 and shrinking for 1, rad/s: a limit that is surely below is none, and neither
+    /// is one that the model has without telling it.
+    pub(super) fn has_reached(&mut self, way: usize, speed_rad_s: f64) {
+        let limit = if way == 0 {
+            &mut self.speed_limit_growing_rad_s
+        } else {
+            &mut self.speed_limit_shrinking_rad_s
+        };
+        let model = &mut self.model.speed_limit_rad_s[way];
+        let most = limit.interval.map(|[_, most]| most).or(*model);
+        if most.is_some_and(|most| most < speed_rad_s) {
+            let lower_bound = Some(speed_rad_s);
+            (*limit, *model) = (Estimated { lower_bound, ..Estimated::default() }, None);
+        }
+    }
+
     /// Whether these lowest and highest speeds, rad/s, are so near its limits that it may be at them, where those are known.
     pub fn reaches_limits(&self, [lowest, highest]: [f64; 2]) -> bool {
         let reaches = |limit: Estimated, speed: f64| {

@@ -55,7 +55,7 @@ pub const SPARSEST_S: f64 = 0.2;
 const SPEED_WINDOW_S: f64 = 0.1;
 
 /// A speed is reached that is held so long on average, s.
-const REACHED_OVER_S: f64 = 0.5;
+pub(super) const REACHED_OVER_S: f64 = 0.5;
 
 /// Speeds so many samples apart tell an acceleration.
 const RISES_OVER: usize = 10;
@@ -101,6 +101,14 @@ impl Run {
     /// Distance that the joint was sent, rad.
     pub(super) fn travel_rad(&self) -> f64 {
         self.sent.windows(2).map(|w| (w[1].0 - w[0].0).abs()).sum()
+    }
+
+    /// Sent angle at a sample, rad.
+    pub(super) fn sent_rad(&self, sample: &Sample) -> f64 {
+        match self.sent.get(sample.step..sample.step + 2) {
+            Some([a, b]) => a.0 + sample.part * (b.0 - a.0),
+            _ => f64::NAN,
+        }
     }
 
     /// Where the window after a start ends.

@@ -19,7 +19,7 @@ const WORST_R2: f64 = -1.0;
 const PEAK_BY_SCALE: f64 = 5.0;
 
 /// Fewest starts of other runs that say how far a model holds for them.
-const FEWEST: usize = 3;
+pub(super) const FEWEST: usize = 3;
 
 /// Fewest starts that make a margin.
 const STARTS: usize = 10;
@@ -71,7 +71,7 @@ pub(super) fn skill(problem: &Problem, x: &[f64], rounds: usize, workspace: &mut
         {
             workspace.simulate(&model, run, Priors::integral_rad_s(integral));
             for (sample, error) in run.samples.iter().zip(errors).filter(|(sample, _)| sample.fold == fold) {
-                let sent_rad = sent_rad(run, sample);
+                let sent_rad = run.sent_rad(sample);
                 *error = (sent_rad - sample.measured_rad, sent_rad - workspace.at(sample));
             }
         }
@@ -118,14 +118,6 @@ impl Skill {
     }
 }
 
-/// Sent angle at a sample, rad.
-pub(super) fn sent_rad(run: &Run, sample: &Sample) -> f64 {
-    match run.sent.get(sample.step..sample.step + 2) {
-        Some([a, b]) => a.0 + sample.part * (b.0 - a.0),
-        _ => f64::NAN,
-    }
-}
-
 /// Peak errors after each start.
 fn starts(run: &Run, errors: &[(f64, f64)]) -> Vec<HeldOutStart> {
     let found = |(k, &start): (usize, &usize)| {
@@ -150,18 +142,23 @@ pub(super) fn unexplained_rad(starts: &[Vec<HeldOutStart>]) -> Option<[f64; 2]> 
     (!peaks.is_empty()).then(|| [mean, quantile(peaks, 0.9)])
 }
 
-/// The same of a model that was fitted to other runs than these; `None` with fewer than [`FEWEST`] starts.
-pub(super) fn unexplained_by(model: &Model, runs: &[Run], workspace: &mut Workspace) -> Option<[f64; 2]> {
+/// The same of a model that was fitted to other runs than these; `None` with fewer than `fewest` starts.
+pub(super) fn unexplained_by(
+    model: &Model,
+    runs: &[Run],
+    fewest: usize,
+    workspace: &mut Workspace,
+) -> Option<[f64; 2]> {
     let mut all = Vec::new();
     for run in runs {
         workspace.simulate(model, run, 0.0);
         let error = |sample: &Sample| {
-            let sent_rad = sent_rad(run, sample);
+            let sent_rad = run.sent_rad(sample);
             (sent_rad - sample.measured_rad, sent_rad - workspace.at(sample))
         };
         all.push(starts(run, &run.samples.iter().map(error).collect::<Vec<_>>()));
     }
-    (all.iter().map(Vec::len).sum::<usize>() >= FEWEST).then(|| unexplained_rad(&all))?
+    (all.iter().map(Vec::len).sum::<usize>() >= fewest).then(|| unexplained_rad(&all))?
 }
 
 /// Factor on predicted peaks: 90 % of the measured ones stay below.

@@ -194,7 +194,9 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
     } else if !open.is_empty() {
         lines.push(format!("The logs do not identify: {}.", open.join("; ")));
         let why = if fitted.runs.iter().any(|run| run.identifies) {
-            "The strokes of the identification run were not faster than these joints, which kept up with them.".to_owned()
+            "In the strokes of the identification run these joints held no speed that is a limit: they kept up, or gained speed for as long as a \
+             stroke lasts. Longer strokes, by a larger --max-speed-deg-s or --max-speed-mm-s of excite and where the range allows, show more."
+                .to_owned()
         } else {
             let joints = fit.joints.iter().map(|joint| {
                 let unit = if joint.kind == JointKind::Slides { "mm" } else { "" };

@@ -166,12 +166,13 @@ fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
             });
             limits([*broken, *between], nearest) + &fast + &sharp + &beyond(outside) + &none
         }
-        Finding::TooFast(TooFast { joint, kind, planned_rad_s, limit_rad_s: [own, most] }) => format!(
-            "The plan of {joint} goes up to {}/s, and the joint was found to make {}/s, {}/s at most, in these runs: no command mends that, \
-             a slower plan does, or, where joints share a pump or a supply, fewer of them at once.",
+        Finding::TooFast(TooFast { joint, kind, planned_rad_s, limit_rad_s: [own, most], also }) => format!(
+            "The plan of {joint} goes up to {}/s, and the joint was found to make {}/s, {}/s at most, in the runs of the fit{}: no command \
+             mends that, a slower plan does, or, where joints share a pump or a supply, fewer of them at once.",
             position(*kind, *planned_rad_s),
             position(*kind, *own),
-            position(*kind, *most)
+            position(*kind, *most),
+            if also.is_empty() { String::new() } else { format!("; the same holds for {}", also.join(", ")) }
         ),
         Finding::Newest { why } => newest(why),
         Finding::Together { limit, asked, at_s } => together(limit, *asked, *at_s),

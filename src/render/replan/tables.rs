@@ -50,7 +50,12 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
         let columns =
             [Column::words("joint"), speed, Column::numbers("from"), acceleration, Column::numbers("from")];
         let held = Table::of(columns, search.held.iter().map(|held| held_row(held, units)));
-        document.sections.push(Section::new(Id::OTHER, "Limits of the new plan", [held]));
+        let of = if replanned.retimed {
+            "Limits of the new plan"
+        } else {
+            "Limits that a new plan was sought under"
+        };
+        document.sections.push(Section::new(Id::OTHER, of, [held]));
     }
     document.remarked(&replanned.remarks)
 }

@@ -187,9 +187,10 @@ fn check_points(
         let (joint, far) = nearest(point);
         (far > MISSES_RAD).then(|| {
             format!(
-                "the plan in {} does not pass key point {point} of the task: {} stays {} away from it; the next plan passes \
+                "the plan in {} does not pass key point {} of the task: {} stays {} away from it; the next plan passes \
                  it",
                 path.display(),
+                point + 1,
                 names.get(joint).map_or("", String::as_str),
                 kind(joint).says(far)
             )

@@ -7,9 +7,9 @@ use super::{
     Inputs, ReplanFailure,
 };
 use crate::{
-    fit::{Fit, Observation},
+    fit::{Fit, JointFit, Observation},
     log::Recording,
-    remark::Remarks,
+    remark::{Code, Remarks},
 };
 
 /// What runs that a model was fitted to, among others, leave unexplained is less than what the next one will.
@@ -30,7 +30,7 @@ pub(super) fn machine(
             observed.iter().flat_map(|run| &run.measured.tracks).map(|track| (track.name(), track.kind()));
         file.check_joints(path, joints)?;
         let own = |log: &String| logs.iter().any(|name| Path::new(name).ends_with(log));
-        let doubts = fit::doubts(logs, observed);
+        let mut doubts = fit::doubts(logs, observed);
         // What the models leave unexplained elsewhere, as in strokes of an identification run, is not what they leave here.
         let seen: Vec<Observation<'_>> = observed.iter().map(|run| observation(run)).collect();
         let (all, any) = (file.logs.iter().all(own), file.logs.iter().any(own));
@@ -40,7 +40,28 @@ pub(super) fn machine(
             _ if any && !all => found.map(|peak_rad| SEEN * peak_rad),
             _ => found,
         };
-        return Ok((file.fit.held_against(&seen, left), file.logs, doubts));
+        let known = file.fit.clone();
+        let fit = file.fit.held_against(&seen, left);
+        for (joint, held) in known.joints.iter().zip(&fit.joints) {
+            let limits =
+                |joint: &JointFit| [joint.speed_limit_growing_rad_s, joint.speed_limit_shrinking_rad_s];
+            for (before, after) in limits(joint).into_iter().zip(limits(held)) {
+                let (Some([_, most]), None, Some(reached)) =
+                    (before.interval, after.interval, after.lower_bound)
+                else {
+                    continue;
+                };
+                let (name, kind) = (&joint.name, joint.kind);
+                let message = format!(
+                    "{name} goes {}/s in these runs, and {} says {}/s at most: that limit is not used",
+                    kind.says(reached),
+                    path.display(),
+                    kind.says(most)
+                );
+                doubts.add(Code::PoorFit, 1, message);
+            }
+        }
+        return Ok((fit, file.logs, doubts));
     }
     let fitted = fit::of(logs, observed).map_err(fit::FitFailure::from)?;
     Ok((fitted.fit, fitted.runs.into_iter().map(|run| run.log).collect(), fitted.remarks))

@@ -203,13 +203,21 @@ fn too_fast(replanned: &Replanned) -> Option<Check> {
         let sides = [(most, &fit.speed_limit_growing_rad_s), (-least, &fit.speed_limit_shrinking_rad_s)];
         let beyond = sides.into_iter().filter_map(|(planned_rad_s, limit)| {
             let limit_rad_s = [limit.value?, limit.interval.filter(|_| limit.identified)?[1]];
-            let (joint, kind) = (fit.name.clone(), fit.kind);
-            (planned_rad_s > limit_rad_s[1]).then_some(TooFast { joint, kind, planned_rad_s, limit_rad_s })
+            let (joint, kind, also) = (fit.name.clone(), fit.kind, Vec::new());
+            (planned_rad_s > limit_rad_s[1]).then_some(TooFast {
+                joint,
+                kind,
+                planned_rad_s,
+                limit_rad_s,
+                also,
+            })
         });
         beyond.max_by(|a, b| by_limit(a).total_cmp(&by_limit(b)))
     };
-    let all = replanned.fit.joints.iter().filter_map(of_joint);
-    let finding = Finding::TooFast(all.max_by(|a, b| by_limit(a).total_cmp(&by_limit(b)))?);
+    let mut all: Vec<TooFast> = replanned.fit.joints.iter().filter_map(of_joint).collect();
+    all.sort_by(|a, b| by_limit(b).total_cmp(&by_limit(a)));
+    let also = all.iter().skip(1).map(|joint| joint.joint.clone()).collect();
+    let finding = Finding::TooFast(TooFast { also, ..all.into_iter().next()? });
     Some(Check { level: Level::Caution, finding })
 }
 

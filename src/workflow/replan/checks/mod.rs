@@ -179,6 +179,9 @@ pub struct TooFast {
     pub planned_rad_s: f64,
     /// The joint's own, and the highest that it may be in nineteen of twenty cases, rad/s.
     pub limit_rad_s: [f64; 2],
+    /// The other joints whose plan is faster than they may be.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub also: Vec<String>,
 }
 
 /// A joint that is sent faster than its plan.
