@@ -7,7 +7,7 @@ use super::{
     metric::{Units, on_paper, unit},
 };
 use crate::{
-    fit::{JointRoom, Ramp},
+    fit::{JointRoom, RAMP_S, Ramp},
     math::range,
     replay::Dimension,
     series::JointKind::{self, Slides, Turns},
@@ -32,7 +32,8 @@ pub(crate) fn document(excited: &Excited, of_sample: bool, file: &Path) -> Docum
     let strokes = |kind: JointKind| {
         let most = excited.joints.iter().find(|joint| joint.kind == kind)?.most_rad_s;
         let one = |ramp: &Ramp| {
-            let [way, speed] = [(Dimension::Position, ramp.travel_rad), (Dimension::Speed, ramp.speed_rad_s)]
+            let speed = ramp.sent_rad_s().min(excited.fastest(kind));
+            let [way, speed] = [(Dimension::Position, ramp.travel_rad), (Dimension::Speed, speed)]
                 .map(|(dimension, si)| with(dimension, kind, si));
             format!("+-{way} at {speed}")
         };
@@ -90,23 +91,6 @@ pub(crate) fn document(excited: &Excited, of_sample: bool, file: &Path) -> Docum
             fast.join(" or ")
         ))
     });
-    let beyond: Vec<String> = excited
-        .beyond
-        .iter()
-        .map(|(joint, kind, [sent, allowed])| {
-            format!("{joint} {} of {}", number(*kind, *sent), with(Dimension::Speed, *kind, *allowed))
-        })
-        .collect();
-    let slower = [(Turns, "--max-speed-deg-s"), (Slides, "--max-speed-mm-s")].into_iter();
-    let slower = slower.filter(|(kind, _)| excited.beyond.iter().any(|(_, own, _)| own == kind));
-    let slower: Vec<&str> = slower.map(|(_, option)| option).collect();
-    let beyond = (!beyond.is_empty()).then(|| {
-        Sentence::advice(format!(
-            "Limits of the task or of the arm that they exceed: {}. If the machine must keep them, send no joint faster: {}.",
-            beyond.join(", "),
-            slower.join(", ")
-        ))
-    });
     let beyond_ends = BEYOND.into_iter().filter(|(kind, _)| has(*kind));
     let beyond_ends: Vec<String> = beyond_ends
         .map(|(kind, room)| format!("{:.0} {}", on_paper(kind, room), unit(Dimension::Position, kind)))
@@ -121,6 +105,33 @@ pub(crate) fn document(excited: &Excited, of_sample: bool, file: &Path) -> Docum
             beyond_ends.join(" or ")
         )))
         .with_all(fast)
-        .with_all(beyond);
+        .with_all(beyond(excited));
     Document::titled(title).with(section)
+}
+
+/// Limits of the task or of the arm that the strokes exceed.
+fn beyond(excited: &Excited) -> Vec<Sentence> {
+    let of = |limits: &[(String, JointKind, [f64; 2])], dimension: Dimension| {
+        let one = |(joint, kind, [sent, allowed]): &(String, JointKind, [f64; 2])| {
+            let [sent, allowed] = [sent, allowed].map(|si| format!("{:.1}", on_paper(*kind, *si)));
+            format!("{joint} {sent} of {allowed} {}", unit(dimension, *kind))
+        };
+        (!limits.is_empty()).then(|| limits.iter().map(one).collect::<Vec<_>>().join(", "))
+    };
+    let slower = [(Turns, "--max-speed-deg-s"), (Slides, "--max-speed-mm-s")].into_iter();
+    let slower = slower.filter(|(kind, _)| excited.beyond.iter().any(|(_, own, _)| own == kind));
+    let slower: Vec<&str> = slower.map(|(_, option)| option).collect();
+    let speeds = of(&excited.beyond, Dimension::Speed).map(|speeds| {
+        format!(
+            "Limits of the task or of the arm that they exceed: {speeds}. If the machine must keep them, send no joint faster: {}.",
+            slower.join(", ")
+        )
+    });
+    let accelerations = of(&excited.sharper, Dimension::Acceleration).map(|accelerations| {
+        format!(
+            "Strokes take {RAMP_S} s to their speed, to show how joints leave rest. Accelerations of the task or of the arm that this exceeds: \
+             {accelerations}; limits of jerk are not kept at all. Send it only where the set values of the machine may step so."
+        )
+    });
+    speeds.into_iter().chain(accelerations).map(Sentence::Advice).collect()
 }

@@ -13,7 +13,7 @@ use super::{
     plan::{PlanFailure, PlanRequest, TaskFiles},
 };
 use crate::{
-    fit::{Excitation, FitError, JointRoom, STROKE_POINTS_HZ, excite},
+    fit::{Excitation, FitError, JointRoom, RAMP_S, STROKE_POINTS_HZ, excite},
     log::WriteError,
     math::range,
     plan::Setup,
@@ -85,6 +85,8 @@ pub struct Excited {
     pub task: Option<TaskFiles>,
     /// Joints that are sent faster than the task allows: what is sent, and what is allowed, rad/s or m/s.
     pub beyond: Vec<(String, JointKind, [f64; 2])>,
+    /// The same of accelerations, rad/s² or m/s².
+    pub sharper: Vec<(String, JointKind, [f64; 2])>,
 }
 
 /// Writes the run.
@@ -107,23 +109,36 @@ pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
     let joints: Vec<JointRoom> = joints.into_iter().map(limited).collect();
     let excitation = inputs.excitation.clone();
     let command = excite(&joints, &excitation)?;
-    let beyond = request.as_ref().map_or_else(Vec::new, |request| beyond(&request.setup, &command));
-    Ok(Excited { joints, excitation, command, task: request.map(|request| request.files), beyond })
+    let of = |limit: usize, sent: fn(&Track) -> f64| {
+        request.as_ref().map_or_else(Vec::new, |request| beyond(&request.setup, &command, limit, sent))
+    };
+    let (beyond, sharper) = (of(0, fastest_rad_s), of(1, sharpest_rad_s2));
+    Ok(Excited { joints, excitation, command, task: request.map(|request| request.files), beyond, sharper })
 }
 
 fn fastest_rad_s(track: &Track) -> f64 {
     track.velocity().unwrap_or_default().iter().fold(0.0, |most, speed| most.max(speed.abs()))
 }
 
-/// Joints that are sent faster than their limits of speed.
-fn beyond(setup: &Setup, command: &Series) -> Vec<(String, JointKind, [f64; 2])> {
-    let sent = |(j, name): (usize, String)| {
-        let (_, [most_rad_s, ..]) = setup.joint_limits(j)?;
+/// Strokes take [`RAMP_S`] to their speed, evenly.
+fn sharpest_rad_s2(track: &Track) -> f64 {
+    fastest_rad_s(track) / RAMP_S
+}
+
+/// Joints that are sent beyond one of their limits: of speed, acceleration, jerk.
+fn beyond(
+    setup: &Setup,
+    command: &Series,
+    limit: usize,
+    sent: impl Fn(&Track) -> f64,
+) -> Vec<(String, JointKind, [f64; 2])> {
+    let of_joint = |(j, name): (usize, String)| {
+        let most = *setup.joint_limits(j)?.1.get(limit)?;
         let track = command.track(&name)?;
-        let fastest_rad_s = fastest_rad_s(track);
-        (fastest_rad_s > most_rad_s).then_some((name, track.kind(), [fastest_rad_s, most_rad_s]))
+        let sent = sent(track);
+        (sent > most).then_some((name, track.kind(), [sent, most]))
     };
-    setup.joint_names().into_iter().enumerate().filter_map(sent).collect()
+    setup.joint_names().into_iter().enumerate().filter_map(of_joint).collect()
 }
 
 /// Every joint about the middle of what its key points ask for, within its range.
