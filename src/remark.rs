@@ -92,7 +92,9 @@ pub enum Code {
     RangeEnd,
     /// A ceiling so high that it binds nothing.
     InactiveBound,
-    /// Both sides of a comparison are one run.
+    /// Limits that are judged between runs of different plans.
+    OtherPlan,
+    /// Both sides of a comparison, or plan and measurement, are one.
     SameRun,
     /// What was sent to the machine is not what was made to be sent.
     SentOtherwise,

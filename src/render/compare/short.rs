@@ -2,6 +2,7 @@
 
 use super::{kind, together, together_name};
 use crate::{
+    remark::Code,
     render::{
         kit::{Sentence, counted, mm, optional, percent, probability, signed},
         metric::{position, with_unit},
@@ -25,6 +26,7 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     }
     lines.extend(joints(comparison, &peaks));
     lines.extend(of_few_runs(&peaks));
+    lines.extend(measured_otherwise(comparison, &peaks));
     lines.extend(answers(comparison));
     lines.extend(at_the_tool(comparison).map(|changes| format!("At the tool: {changes}.")));
     lines.extend(together(comparison).filter_map(whole_run));
@@ -96,6 +98,14 @@ fn of_few_runs(peaks: &[&Summary]) -> Option<String> {
          it apart (--more-before, --more-after)."
             .to_owned()
     })
+}
+
+/// What changed may be how it was measured.
+fn measured_otherwise(comparison: &Comparison, peaks: &[&Summary]) -> Option<String> {
+    let otherwise =
+        comparison.remarks.as_slice().iter().find(|remark| remark.code == Code::MeasuredOtherwise)?;
+    let shown = peaks.iter().any(|peak| matches!(peak.verdict, Verdict::Smaller | Verdict::Larger));
+    shown.then(|| format!("That may be of the measurement, not of the machine: {}.", otherwise.message))
 }
 
 fn verdict(peak: &Summary, kind: JointKind) -> String {

@@ -42,7 +42,7 @@ use document::FORMAT;
 use figures::{figures, tool};
 use member::{Member, lacking, pairs};
 use pairing::matched;
-use same::{each_once, is_same};
+use same::{each_once, each_run_once, is_one_run, is_same};
 use sensed::sensed_alike;
 use stretch::cut_alike;
 use summary::{overall, summaries, worst};
@@ -82,7 +82,8 @@ pub enum CompareFailure {
     MixedKinds { joint: String, kinds: [JointKind; 2], logs: Box<[PathBuf; 2]> },
     /// The runs are of different arms, or name their joints differently.
     #[error(
-        "the runs have no joint in common: {before} before, {after} after; --joints names joints of topics that name none"
+        "the runs have no joint in common: {before} before, {after} after; --joints names joints of topics that name none, and \
+         `hydrotrace import` gives those of a table other names (--planned NAME=COLUMN, --measured NAME=COLUMN)"
     )]
     NoCommonJoint { before: String, after: String },
 }
@@ -117,8 +118,10 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
         after: each_once(Side::After, &inputs.after, &mut remarks),
         ..inputs.clone()
     };
-    let mut before = analysed(inputs, &inputs.before)?;
-    let mut after = analysed(inputs, &inputs.after)?;
+    let (paths_before, mut before) =
+        each_run_once(Side::Before, analysed(inputs, &inputs.before)?, &mut remarks);
+    let (paths_after, mut after) = each_run_once(Side::After, analysed(inputs, &inputs.after)?, &mut remarks);
+    let inputs = &Inputs { before: paths_before, after: paths_after, ..inputs.clone() };
     let first = before.first().ok_or(CompareFailure::NoRun(Side::Before))?;
     let first_after = after.first().ok_or(CompareFailure::NoRun(Side::After))?;
     let has = |report: &Report, name: &str| report.replay.joints.iter().any(|joint| joint.name == name);
@@ -151,8 +154,9 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
         }
     }
     let (paired, unpaired) = pairs(first, &all, &joints);
-    for (a, b) in inputs.before.iter().flat_map(|a| inputs.after.iter().map(move |b| (a, b))) {
-        if is_same(a, b) {
+    for (k, a) in inputs.before.iter().enumerate() {
+        let is_it = |(other, b): &(usize, &PathBuf)| is_same(a, b) || is_one_run(&before[k], &after[*other]);
+        for (_, b) in inputs.after.iter().enumerate().filter(is_it) {
             let message = format!(
                 "{} before and {} after are one and the same run; their difference says nothing",
                 a.display(),
@@ -177,13 +181,19 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     let gates = inputs.gates.judge(&pairs, &summaries, (judged, tool.as_ref()));
     let runs = |side: Side| all.iter().filter(|m| m.side == side).map(|m| m.run(&joints)).collect();
     let (runs_before, runs_after): (Vec<Run>, Vec<Run>) = (runs(Side::Before), runs(Side::After));
+    let same_plan = runs_after.iter().all(|run| run.same_plan);
+    if !same_plan && !gates.is_empty() {
+        let message = "the limits are judged between runs of different plans, and what changed is that of the plans too: compare runs of \
+                       one plan where it is the machine that is judged";
+        remarks.add(Code::OtherPlan, 1, message);
+    }
     let samples = |reports: &mut [Report]| {
         reports.first_mut().map_or_else(Vec::new, |report| std::mem::take(&mut report.pairs))
     };
     Ok(Comparison {
         format: FORMAT.to_owned(),
         program: PROGRAM.to_owned(),
-        same_plan: runs_after.iter().all(|run| run.same_plan),
+        same_plan,
         before: runs_before,
         after: runs_after,
         joints: joints.clone(),

@@ -6,8 +6,11 @@ use crate::{
     replay::{
         JOINT, JointReplay, Judged, Limit, Metric, Replay, Row, TOOL, TRANSITION, ToolReplay, Transition,
     },
-    series::JointKind,
+    series::{JointKind, Pair},
 };
+
+/// Fewer samples beside a plan are no run that could keep a limit: of a recorder that failed.
+const FEWEST: usize = 20;
 
 /// The limits that a run must keep.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -69,15 +72,24 @@ impl Gates {
         Self { empty_is_kept, ..self }
     }
 
-    /// Judges every limit; without a tool there is none to judge.
-    pub(super) fn judge(&self, replay: &Replay, tool: Option<&ToolReplay>) -> Vec<GateResult> {
+    /// Judges every limit; without a tool there is none to judge, and of joints with hardly a sample there is nothing.
+    pub(super) fn judge(
+        &self,
+        replay: &Replay,
+        tool: Option<&ToolReplay>,
+        pairs: &[Pair],
+    ) -> Vec<GateResult> {
+        let few: Vec<&str> =
+            pairs.iter().filter(|pair| pair.matched < FEWEST).map(|pair| pair.name.as_str()).collect();
+        let tool = tool.filter(|_| few.len() < pairs.len());
         let one = |gate: &Gate| {
             let transitions = of(TRANSITION, gate).map(|metric| {
-                let all = replay.transitions.iter().map(|t: &Transition| (t, t.joint.as_str(), t.joint_kind));
-                found(metric, gate, all)
+                let all = replay.transitions.iter().filter(|t| !few.contains(&t.joint.as_str()));
+                found(metric, gate, all.map(|t: &Transition| (t, t.joint.as_str(), t.joint_kind)))
             });
             let joints = || {
-                let all = replay.joints.iter().map(|j: &JointReplay| (j, j.name.as_str(), j.kind));
+                let all = replay.joints.iter().filter(|joint| !few.contains(&joint.name.as_str()));
+                let all = all.map(|j: &JointReplay| (j, j.name.as_str(), j.kind));
                 of(JOINT, gate).map(|metric| found(metric, gate, all))
             };
             let tools = || {
@@ -128,10 +140,7 @@ fn worst(gate: &Gate, found: Vec<Found<'_>>, empty_is_kept: bool) -> GateResult 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        replay::{Rules, replay},
-        series::Pair,
-    };
+    use crate::replay::{Rules, replay};
 
     fn gate(key: &str, value: f64) -> Gate {
         Gate { limit: Row::find(key).unwrap(), kind: JointKind::Turns, value }
@@ -169,7 +178,7 @@ mod tests {
     #[test]
     fn a_limit_with_nothing_to_judge_is_not_kept_unless_that_is_allowed() {
         let limits = Gates { gates: vec![gate("onset-delay", 0.3)], empty_is_kept: false };
-        let judged = |limits: &Gates, follows: bool| limits.judge(&replayed(follows), None).remove(0);
+        let judged = |limits: &Gates, follows: bool| limits.judge(&replayed(follows), None, &[]).remove(0);
         // A joint that crept before has no dead time.
         let crept = judged(&limits, true);
         assert_eq!((crept.kept, crept.worst, crept.joint), (false, None, None));
@@ -188,7 +197,7 @@ mod tests {
     fn a_limit_in_metres_judges_no_joint_that_turns() {
         let in_metres = Gate { kind: JointKind::Slides, ..gate("rms", 0.0) };
         let limits = Gates { gates: vec![in_metres], empty_is_kept: true };
-        let judged = limits.judge(&replayed(false), None).remove(0);
+        let judged = limits.judge(&replayed(false), None, &[]).remove(0);
         assert_eq!((judged.unit.as_str(), judged.kept, judged.joint), ("m", true, None));
     }
 }

@@ -129,7 +129,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     }
     let Analysis { alignment, pairs, replay } = Analysis::of(alignment, pairs, &inputs.rules);
     // A command that was made ahead of its plan may have joints lead it.
-    if carried.promise().is_none() {
+    if carried.promise().is_none() && inputs.read.measured_delay_ns.is_none() {
         remark_leads(&pairs, &replay, &mut remarks);
     }
     let arm = match tool::arm(&recording, &carried, inputs, &pairs) {
@@ -157,7 +157,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         }
         _ => {}
     }
-    let gates = inputs.gates.judge(&replay, tool.found());
+    let gates = inputs.gates.judge(&replay, tool.found(), &pairs);
     let front = front(&carried, &mut remarks);
     let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let named = |key: &str| recording.metadata.values().find_map(|entries| entries.get(key).cloned());
