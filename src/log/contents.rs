@@ -33,8 +33,13 @@ pub enum Contents {
     Other,
 }
 
-/// Formats of recordings by their first bytes.
-const RECORDINGS: [(&[u8], &str); 5] = [
+/// Formats of recordings, and of what this program never writes, by their first bytes.
+const RECORDINGS: [(&[u8], &str); 10] = [
+    (b"\x1F\x8B", "a packed file"),
+    (b"\x28\xB5\x2F\xFD", "a packed file"),
+    (b"PK\x03\x04", "an archive or a workbook"),
+    (b"%PDF", "a PDF document"),
+    (b"\x7FELF", "a program"),
     (b"SQLite format 3\0", "a database, as ROS 2 bags are"),
     (b"#ROSBAG", "a ROS 1 bag"),
     (b"MDF     ", "an MF4 recording"),

@@ -31,10 +31,20 @@ pub(super) fn choose(
     options: &CsvOptions,
     remarks: &mut Remarks,
 ) -> Result<TimeSource, CsvError> {
+    let look = Look { head, labels, dialect, options };
     if let Some(hz) = options.rate_hz {
+        let times = |column: &usize| {
+            labels[*column].is_time && look.column(*column).is_ok_and(|found| found.steady && found.resolves)
+        };
+        if let Some(column) = (0..labels.len()).find(times) {
+            let message = format!(
+                "column {:?} is a time, and --rate counts rows instead; without --rate it is read",
+                head.names[column]
+            );
+            remarks.add(Code::Ambiguous, 1, message);
+        }
         return Ok(TimeSource::Rate { hz });
     }
-    let look = Look { head, labels, dialect, options };
     if let Some(name) = &options.time {
         let column = find(name, "--time", &head.names)?;
         return Ok(look.spread(text, look.column(column)?).tell(head, remarks));

@@ -79,6 +79,18 @@ pub enum CsvError {
         options.join(" ")
     )]
     NumberedApart { planned: String, measured: String, options: Vec<String> },
+    /// An orientation beside a position without a unit.
+    #[error(
+        "columns qx, qy, qz and qw are the orientation of a tool, and its position says no unit: write it into the headers of x, y and z, \
+         such as x_m or x_mm"
+    )]
+    PoseUnit,
+    /// An orientation without a position.
+    #[error(
+        "columns qx, qy, qz and qw are the orientation of a tool, and no column is its position: no joint of an arm; give those of x, y and z, \
+         with their unit, too"
+    )]
+    OrientationAlone,
     /// An interface of a joint that the log does not have.
     #[error("{what} names the joint {joint:?}{}; the joints are {present}", suggestion(nearest.as_deref()))]
     NoJoint { what: String, joint: String, nearest: Option<String>, present: String },

@@ -47,9 +47,9 @@ const OWN: [(&str, Role); 3] =
     [("_planned", Role::Planned), ("_measured", Role::Measured), ("_command", Role::Command)];
 
 /// Components of the position of a tool.
-const PLACE: [&str; 3] = ["x", "y", "z"];
+pub(super) const PLACE: [&str; 3] = ["x", "y", "z"];
 /// Components of its orientation.
-const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
+pub(super) const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 
 /// Headers that are a time, whatever their words mean; the second as `LabVIEW` names it.
 const TIMES: &str = "t X_Value ts s sec secs seconds ms millis milliseconds micros duration datenum";

@@ -7,7 +7,7 @@ use super::{
     by_meaning::plan_by_error,
     column::{find, present},
     head::Head,
-    label::{Label, is_place},
+    label::{Label, PLACE, QUATERNION, is_place, label},
     number::number,
     offered::offered,
     pairing::{Draft, Partners, by_last_part, numbered_apart, plan_beside_measured, without_shared_words},
@@ -110,6 +110,7 @@ pub(super) fn lay_out(
             draft.role = Role::Planned;
         }
     }
+    without_orientation(head, &mut drafts, remarks)?;
     plan_beside_measured(head, &mut drafts, remarks);
     drop_repeats(head, labels, &mut drafts, remarks)?;
     without_shared_words(&mut drafts);
@@ -159,6 +160,23 @@ pub(super) fn lay_out(
         return Err(CsvError::SameColumn { column: head.names[column].clone(), number: column + 1 });
     }
     Ok(Layout { joints: joints.into_iter().map(|(_, name)| name).collect(), uses, interfaces })
+}
+
+/// The orientation of a tool whose position says no unit is left out: its components are no angles of joints.
+fn without_orientation(head: &Head, drafts: &mut Vec<Draft>, remarks: &mut Remarks) -> Result<(), CsvError> {
+    let has = |names: &[&str]| names.iter().all(|name| drafts.iter().any(|draft| draft.key == *name));
+    if !has(&QUATERNION) || has(&PLACE) {
+        return Ok(());
+    }
+    drafts.retain(|draft| !QUATERNION.contains(&draft.key.as_str()));
+    if drafts.is_empty() {
+        let has_place = head.names.iter().any(|name| PLACE.contains(&label(name, None).key.as_str()));
+        return Err(if has_place { CsvError::PoseUnit } else { CsvError::OrientationAlone });
+    }
+    let message = "the orientation of a tool (qx, qy, qz, qw) is left out, for its position says no unit: x, y and z need one in their \
+                   headers, such as x_m";
+    remarks.add(Code::Guessed, 1, message);
+    Ok(())
 }
 
 /// In a table whose columns say no side, lengths may be joints that slide or anything else: what is left out is said.
@@ -255,7 +273,7 @@ fn drop_repeats(
 
 /// Whether two columns say the same in two units: `q1_rad` and `q1_deg`.
 fn in_another_unit(head: &Head, labels: &[Label], columns: [usize; 2]) -> bool {
-    const ROUNDED: f64 = 0.01;
+    const ROUNDED: f64 = 0.002;
     let [Some(one), Some(other)] = columns.map(|column| labels[column].unit) else { return false };
     let read = |row: &Vec<Vec<u8>>, column: usize, unit: Unit| {
         let cell = row.get(column)?;
@@ -267,7 +285,7 @@ fn in_another_unit(head: &Head, labels: &[Label], columns: [usize; 2]) -> bool {
     let most = pairs.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
     one.measure == other.measure
         && one != other
-        && most > 0.0
+        && pairs.iter().any(|[a, _]| a.to_bits() != pairs[0][0].to_bits())
         && pairs.iter().all(|[a, b]| (a - b).abs() <= ROUNDED * most)
 }
 

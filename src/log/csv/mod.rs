@@ -80,8 +80,8 @@ pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
 pub(in crate::log) use printed::is_rule;
 pub use run::CsvRun;
 pub(in crate::log) use run::{
-    DOUBT_OF_ORIGIN, GIVEN_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNDATED_OF_ORIGIN, UNIT_OF_ORIGIN,
-    UNUSED_OF_ORIGIN,
+    DOUBT_OF_ORIGIN, GIVEN_OF_ORIGIN, GUESSED_OF_ORIGIN, ORIGIN, TIME_OF_ORIGIN, UNDATED_OF_ORIGIN,
+    UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN,
 };
 pub use stream::TableStream;
 pub(in crate::log) use text::of_lines;
@@ -101,6 +101,11 @@ pub enum Quantity {
     Position,
     /// Its speed.
     Velocity,
+}
+
+/// Whether a unit by its name is one of angles.
+pub(in crate::log) fn is_angle(unit: &str) -> bool {
+    unit::parse_unit(unit).is_some_and(|unit| unit.measure == unit::Measure::Angle)
 }
 
 /// The joint that a header or the name of a topic speaks of, without the words for plan, measurement and angle.

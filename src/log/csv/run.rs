@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, io::Write};
 
-use super::{Quantity, Role, Understood, layout::Layout, read::Cells};
+use super::{Quantity, Role, Understood, layout::Layout, read::Cells, understood::ColumnRead};
 use crate::{
     log::{LogWriter, WriteError, WriteOptions, joint_kind},
     remark::{Code, Remarks},
@@ -28,6 +28,8 @@ pub(in crate::log) const UNUSED_OF_ORIGIN: &str = "not used";
 
 /// What its entries of units begin with that the table or its reader stated.
 pub(in crate::log) const UNIT_OF_ORIGIN: &str = "unit of ";
+/// The same of units that were guessed.
+pub(in crate::log) const GUESSED_OF_ORIGIN: &str = "guessed unit of ";
 /// What its entries of options that were given begin with; a number and the option follow.
 pub(in crate::log) const GIVEN_OF_ORIGIN: &str = "option ";
 
@@ -97,13 +99,15 @@ impl CsvRun {
             understood.columns.iter().map(|c| (format!("{} of {}", c.becomes, c.joint), c.header.clone()));
         let time = format!("{} ({})", understood.time.columns.join(", "), understood.time.form);
         let mut origin: BTreeMap<String, String> = columns.collect();
-        let stated = understood
-            .columns
-            .iter()
-            .filter(|column| ["file", "option"].contains(&column.unit_from.as_str()));
-        origin.extend(stated.map(|c| {
-            (format!("{UNIT_OF_ORIGIN}{} of {}", c.becomes, c.joint), c.unit.clone().unwrap_or_default())
-        }));
+        let of_unit = |c: &ColumnRead| {
+            let begins = match c.unit_from.as_str() {
+                "file" | "option" => UNIT_OF_ORIGIN,
+                "guess" => GUESSED_OF_ORIGIN,
+                _ => return None,
+            };
+            Some((format!("{begins}{} of {}", c.becomes, c.joint), c.unit.clone().unwrap_or_default()))
+        };
+        origin.extend(understood.columns.iter().filter_map(of_unit));
         origin.extend([("file".to_owned(), understood.file.clone()), (TIME_OF_ORIGIN.to_owned(), time)]);
         if !understood.time.absolute {
             origin.insert(UNDATED_OF_ORIGIN.to_owned(), String::new());

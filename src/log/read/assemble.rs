@@ -62,12 +62,13 @@ pub(super) fn assemble(
     let mut pending: Vec<&Candidate> =
         choice.planned.iter().chain(beside.iter().flat_map(|(_, found)| found)).collect();
     Imported::check(&assembly.extracted.tables, options)?;
-    let degrees = options.measured_in_degrees;
-    let mut measured = assembly.series(&choice.measured, &pending, degrees, None, &mut remarks);
+    let told = |side: &str| !Imported::guessed_degrees(&assembly.extracted.tables, side);
+    let [measured_degrees, planned_degrees] =
+        [options.measured_in_degrees && told("measured"), options.planned_in_degrees && told("planned")];
+    let mut measured = assembly.series(&choice.measured, &pending, measured_degrees, None, &mut remarks);
     pending.drain(..choice.planned.len());
-    let degrees = options.planned_in_degrees;
     let mut planned =
-        assembly.series(&choice.planned, &pending, degrees, Some((choice, &measured)), &mut remarks);
+        assembly.series(&choice.planned, &pending, planned_degrees, Some((choice, &measured)), &mut remarks);
     let mut command = None;
     let mut signals = BTreeMap::new();
     for (wanted, found) in &beside {

@@ -192,6 +192,7 @@ fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, L
 fn assembled(mut extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
     let mut options = options.clone();
     options.description = options.description.or_else(|| description::of(&extracted));
+    let told = options.continuous.clone();
     options.continuous.extend(options.description.as_deref().map(continuous_joints).unwrap_or_default());
     let mut kinds = Kinds::of_names(&mut extracted, &mut options)?;
     let choice = match choose(&extracted, &options) {
@@ -212,6 +213,17 @@ fn assembled(mut extracted: Extracted, options: &ReadOptions) -> Result<Recordin
     }
     let tables = extracted.tables.clone();
     let mut recording = assemble(extracted, &choice, options, kinds)?;
+    let here = |name: &String| {
+        [&recording.planned, &recording.measured].iter().any(|side| side.track(name).is_some())
+    };
+    // Of names that were paired by their last part the caller may have said either.
+    let unknown =
+        told.iter().filter(|name| !here(name) && !options.continuous[told.len()..].iter().any(here));
+    let unknown: Vec<String> = unknown.cloned().collect();
+    for name in unknown {
+        let message = format!("joint {name} that --continuous names is not among those read");
+        recording.remarks.add(Code::UnpairedJoint, 1, message);
+    }
     let Recording { planned, measured, metadata, source, remarks, .. } = &mut recording;
     recovered::remark(metadata, remarks);
     let topics = [&source.planned_topic, &source.measured_topic];

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 use crate::{
     log::{
         csv::{
-            GIVEN_OF_ORIGIN, LengthUnit, TIME_OF_ORIGIN, UNDATED_OF_ORIGIN, UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN,
+            GIVEN_OF_ORIGIN, GUESSED_OF_ORIGIN, LengthUnit, TIME_OF_ORIGIN, UNDATED_OF_ORIGIN,
+            UNIT_OF_ORIGIN, UNUSED_OF_ORIGIN, is_angle,
         },
         error::LogError,
         import_line::{Given, line},
@@ -51,7 +52,8 @@ impl<'a> Imported<'a> {
     fn positions(&self) -> impl Iterator<Item = (&'a str, &'a str)> {
         let joint = |key: &'a str| {
             let (side, joint) = key.split_once(" position of ")?;
-            (!side.starts_with(UNIT_OF_ORIGIN)).then_some(joint)
+            let of_unit = [UNIT_OF_ORIGIN, GUESSED_OF_ORIGIN].iter().any(|begins| side.starts_with(begins));
+            (!of_unit).then_some(joint)
         };
         self.origin.iter().filter_map(move |(key, column)| Some((joint(key)?, column.as_str())))
     }
@@ -72,15 +74,24 @@ impl<'a> Imported<'a> {
                 .next()
                 .map_or(Ok(()), |(joint, unit)| Err(self.converted_before(option, (side, joint), unit)))?;
         }
-        let in_metres =
-            |joint: &str| options.slides.get(joint).is_none_or(|unit| *unit == LengthUnit::Metres);
+        // Metres are what a log holds, unless its table held angles.
+        let converts = |joint: &str, unit: &str| {
+            options.slides.get(joint).is_some_and(|to| *to != LengthUnit::Metres || is_angle(unit))
+        };
         for side in SIDES {
-            let mut stated = self.stated(side).filter(|(joint, _)| !in_metres(joint));
+            let mut stated = self.stated(side).filter(|(joint, unit)| converts(joint, unit));
             stated.next().map_or(Ok(()), |(joint, unit)| {
                 Err(self.converted_before("--slides", (side, joint), unit))
             })?;
         }
         Ok(())
+    }
+
+    /// Whether positions of a side were taken as degrees already, by a guess that an option then confirms.
+    pub(super) fn guessed_degrees(tables: &[BTreeMap<String, String>], side: &str) -> bool {
+        let begins = format!("{GUESSED_OF_ORIGIN}{side} position of ");
+        let mut all = tables.iter().flatten();
+        all.any(|(key, unit)| key.starts_with(&begins) && unit == "deg")
     }
 
     /// The joints whose positions on a side had a unit, and which.

@@ -2,6 +2,7 @@
 
 use super::{quality::looks_like_degrees, recording::Command};
 use crate::{
+    log::source::AXES,
     math::range,
     remark::{Code, Remarks},
     series::{Series, Track},
@@ -51,6 +52,9 @@ pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remark
     if let Some(message) = stands(planned, measured) {
         remarks.add(Code::UnlikePlan, 1, message);
     }
+    if let Some(message) = wired(planned, measured) {
+        remarks.add(Code::SameRun, 1, message);
+    }
     let exchanged = exchanged(planned, measured);
     for [one, other] in &exchanged {
         let message = format!(
@@ -73,23 +77,49 @@ pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remark
     }
 }
 
-/// What is to be said of a plan that stands all the time while a joint goes a long way.
+/// What is to be said of a plan that stands all the time while a joint goes to it from afar: what sinks or is pushed begins at it.
 fn stands(planned: &Series, measured: &Series) -> Option<String> {
-    let moved = |track: &Track| {
-        let [least, most] = range(track.position().iter().copied());
-        (most - least) / SMALL[usize::from(!track.turns())]
+    let comes = |track: &&Track| {
+        let begins = track.t_s().first().and_then(|t_s| planned.track(track.name())?.at(*t_s));
+        let off = begins.zip(track.position().first()).map_or(0.0, |(plan, came)| plan.position - came);
+        off.abs() > SMALL[usize::from(!track.turns())] && moved(track) > 2.0
     };
-    let far = measured.tracks.iter().filter(|track| planned.track(track.name()).is_some());
-    let far = far.map(|track| (track, moved(track))).filter(|(_, moved)| *moved > 2.0);
-    let (track, _) = far.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let track = measured.tracks.iter().filter(comes).max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
     planned.tracks.iter().all(|plan| moved(plan) < TELLS).then(|| {
         let [least, most] = range(track.position().iter().copied());
         format!(
-            "the plan of every joint stands while {} moves by {}: if it is the goal, or of no part of this run, --planned names what              was wanted from moment to moment; `hydrotrace info` lists what the log has",
+            "the plan of every joint stands while {} moves by {}: if it is a goal, or of no part of this run, --planned names what was \
+             wanted from moment to moment; `hydrotrace info` lists what the log has",
             track.name(),
             track.kind().says(most - least)
         )
     })
+}
+
+/// What is to be said of a measurement that is its plan, sample by sample.
+fn wired(planned: &Series, measured: &Series) -> Option<String> {
+    let is_it = |came: &&Track| {
+        // A tool may keep a coordinate of its pose as an estimator is told to.
+        let is_joint = !AXES.contains(&came.name());
+        let plan = planned.track(came.name()).filter(|plan| is_joint && plan.len() == came.len());
+        plan.is_some_and(|plan| plan.position() == came.position())
+            && moved(came) > TELLS
+            && came.len() >= LEAST_INSTANTS
+    };
+    let found: Vec<&str> = measured.tracks.iter().filter(is_it).map(Track::name).collect();
+    (!found.is_empty()).then(|| {
+        format!(
+            "the measurement of {} is its plan to the last digit: one signal stands on both sides, and its errors say nothing; name the \
+             measured topic or column with --measured",
+            found.join(", ")
+        )
+    })
+}
+
+/// How far a joint goes, as a multiple of what is small.
+fn moved(track: &Track) -> f64 {
+    let [least, most] = range(track.position().iter().copied());
+    (most - least) / SMALL[usize::from(!track.turns())]
 }
 
 /// Remarks joints whose command is farther from their plan than that moves: a correction is not, a signal to a valve may be.
@@ -267,6 +297,8 @@ mod tests {
     /// Remarks on two joints of a plan, of which the first was measured so.
     fn remarks(boom: impl Fn(f64) -> f64, stick: impl Fn(f64) -> f64) -> Vec<String> {
         let planned = Series { tracks: vec![track("boom", plan), track("stick", of_stick)] };
+        // To the last digit nothing is its plan.
+        let stick = |t: f64| stick(t) + 1e-6;
         let measured = Series { tracks: vec![track("boom", boom), track("stick", stick)] };
         let mut remarks = Remarks::default();
         of_sides(&planned, &measured, &mut remarks);
@@ -307,6 +339,20 @@ mod tests {
             found.len() == 1 && found[0].starts_with("boom follows the plan of stick and not"),
             "{found:?}"
         );
+    }
+
+    #[test]
+    fn a_plan_on_both_sides_and_a_plan_that_stands_while_the_joint_moves_are_told() {
+        let found = remarks(plan, of_stick);
+        assert!(found.len() == 1 && found[0].contains("boom is its plan to the last digit"), "{found:?}");
+        let said = |planned: &dyn Fn(f64) -> f64, came: &dyn Fn(f64) -> f64| {
+            let [planned, came] = [planned, came].map(|q| Series { tracks: vec![track("boom", q)] });
+            stands(&planned, &came)
+        };
+        let [goal, rests] = [|_: f64| 0.8, |t: f64| 0.8 + 0.01 * (0.3 * t).sin()];
+        let sags = |t: f64| 0.8 - 0.005 * t;
+        assert!(said(&goal, &plan).is_some_and(|said| said.contains("stands while boom moves by")));
+        assert_eq!([said(&goal, &rests), said(&plan, &rests), said(&goal, &sags)], [None, None, None]);
     }
 
     #[test]
