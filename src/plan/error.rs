@@ -9,6 +9,9 @@ use crate::{arm::ArmError, moea::MoeaError, series::JointKind, spline::SplineErr
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum PlanError {
+    /// A task that was built in code and does not hold what its documentation says.
+    #[error("the task has other {what} than expected: {expected}")]
+    Task { what: &'static str, expected: String },
     /// Task and arm do not name the same joints.
     #[error(
         "the task's joints are {task}, those of the arm are {arm}; name every joint of the arm in the task"

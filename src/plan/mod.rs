@@ -3,6 +3,7 @@
 //! A [`Setup`] is a task on its arm. An [`Evaluator`] gives the objectives of one timing and how
 //! near it comes to every limit; [`Setup::margins`] says the same exactly, with the place.
 
+mod checked;
 mod choose;
 mod command_margin;
 mod descend;

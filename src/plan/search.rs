@@ -98,8 +98,8 @@ const DIRECTIONS: usize = 92;
 
 /// Searches the front of a setup.
 ///
-/// The observer sees the start, every generation and the end; it may end the search by
-/// [`ControlFlow::Break`]. Equal settings give equal plans on any number of cores.
+/// The observer sees the start, every generation and the end; by [`ControlFlow::Break`] it ends the evolution, and what was found until
+/// then is polished. Equal settings give equal plans on any number of cores.
 ///
 /// # Errors
 ///
@@ -120,7 +120,7 @@ pub fn search(
     if initial.is_empty() {
         initial.extend(least_broken(seeds.all().cloned()));
     }
-    let _ = observer(&Progress {
+    let started = observer(&Progress {
         phase: Phase::Start,
         evaluations: used,
         generation: 0,
@@ -140,6 +140,9 @@ pub fn search(
         ..moea::Settings::default()
     };
     let outcome = moea::optimise(&TimingProblem::of(setup), &settings, |progress| {
+        if started.is_break() {
+            return ControlFlow::Break(());
+        }
         observer(&Progress {
             phase: Phase::Evolution,
             evaluations: used + progress.evaluations,

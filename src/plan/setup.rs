@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{
     Limit, PlanError,
+    checked::check,
     joint_limits::{JointLimits, merged},
     posture::{key_points, poses},
 };
@@ -59,6 +60,7 @@ impl Setup {
     /// [`PlanError`] if the joints differ, a key point cannot be reached or lies outside a joint's
     /// range, an end is beyond a limit, or a mass is none.
     pub fn new(task: &Task, arm: Arm) -> Result<Self, PlanError> {
+        check(task)?;
         let joints = arm.chain.joint_count();
         let names: Vec<&str> = arm.chain.joints().iter().map(|joint| joint.name.as_str()).collect();
         let order: Option<Vec<usize>> =

@@ -5,10 +5,11 @@ use super::{Population, sorting::dominates};
 /// Members that room is made for at once.
 const ROOM: usize = 1 << 12;
 
-/// Non-dominated feasible solutions of everything offered to it, at most `capacity` of them.
+/// Feasible solutions of those offered to it, none of which dominates another, at most `capacity` of them.
 ///
 /// When it overflows, solutions whose nearest neighbour in normalised objectives is closest go
-/// first; the best of each objective always stays.
+/// first; the best of each objective always stays. What has gone no longer keeps out what it dominates: a member may be dominated by one
+/// that was offered and is no more.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Archive {
     kept: Population,

@@ -44,7 +44,7 @@ impl Reference {
         Self { front, ideal, extent }
     }
 
-    /// Measures against at most about `count` points of [`Benchmark::front`], which is a part of the true front where
+    /// Measures against about `count` points of [`Benchmark::front`], which is a part of the true front where
     /// [`Benchmark::has_whole_front`] is false.
     pub fn of(problem: &Benchmark, count: usize) -> Self {
         let extent = problem.nadir();

@@ -156,17 +156,20 @@ fn fitting(objectives: usize, wanted: usize) -> Result<Vec<f64>, MoeaError> {
         }
         return das_dennis(objectives, p);
     }
-    let total = |outer: usize, inner: usize| Some(count(outer)? + count(inner)?);
-    let (mut outer, mut inner) = (1, 0);
-    loop {
-        if inner + 1 < outer && total(outer, inner + 1).is_some_and(|h| h <= wanted) {
-            inner += 1;
-        } else if total(outer + 1, inner).is_some_and(|h| h <= wanted) {
-            outer += 1;
-        } else {
-            break;
+    let fits = |outer: usize, inner: usize| {
+        let second = if inner == 0 { 0 } else { count(inner)? };
+        count(outer)?.checked_add(second).filter(|total| *total <= wanted)
+    };
+    let (mut best, mut most) = ((1, 0), 0);
+    for outer in (1..).take_while(|outer| fits(*outer, 0).is_some()) {
+        for inner in (0..outer).take_while(|inner| fits(outer, *inner).is_some()) {
+            let total = fits(outer, inner).unwrap_or(0);
+            if total > most {
+                (best, most) = ((outer, inner), total);
+            }
         }
     }
+    let (outer, inner) = best;
     if inner == 0 { das_dennis(objectives, outer) } else { layers(objectives, outer, inner) }
 }
 
@@ -227,6 +230,10 @@ mod tests {
             }
         }
         assert_eq!(Directions::FromPopulation.points(3, 92).unwrap().len(), 3 * 91);
+        for (objectives, wanted, fit) in [(6, 300, 273), (6, 1000, 918), (7, 1000, 952)] {
+            let found = Directions::FromPopulation.points(objectives, wanted).unwrap().len() / objectives;
+            assert_eq!(found, fit, "{objectives} {wanted}");
+        }
     }
 
     #[test]

@@ -20,7 +20,8 @@ pub struct Progress<'a> {
 pub struct Outcome {
     /// The last population. If nothing feasible was found it holds what violates least.
     pub population: Population,
-    /// Non-dominated feasible solutions of the whole run, if an archive was asked for.
+    /// Feasible solutions of the whole run, none of which dominates another, if an archive was asked for; one that found room late may be
+    /// dominated by what the run has dropped.
     pub archive: Option<Population>,
     /// Number of evaluations made.
     pub evaluations: u64,

@@ -95,7 +95,8 @@ impl Population {
     }
 
     /// Adds a member that has been evaluated: `x` `[variables]`, `f` `[objectives]`. One of another
-    /// shape is left out; a violation that is no number is infinite, and zeros of objectives lose their sign.
+    /// shape is left out; a violation that is no number is infinite, and zeros of objectives lose their sign. Objectives that are no number
+    /// are taken as they are: a problem that is evaluated makes such a member the worst.
     pub fn push(&mut self, x: &[f64], f: &[f64], violation: f64) {
         if x.len() == self.variables && f.len() == self.objectives {
             self.x.extend_from_slice(x);

@@ -11,6 +11,8 @@ use pyo3::{
 };
 use tempfile::TempDir;
 
+use crate::work::may_call_python;
+
 /// What bytes without a name are called.
 const NAMELESS: &str = "log.mcap";
 
@@ -54,6 +56,9 @@ impl ReadAt for FileObject {
             into[..count].copy_from_slice(&bytes[..count]);
             Ok(count)
         };
+        if !may_call_python() {
+            return Err(io::Error::other("the call was interrupted"));
+        }
         match Python::try_attach(read) {
             Some(Ok(count)) => Ok(count),
             Some(Err(error)) => Err(io::Error::other(error.to_string())),

@@ -91,8 +91,8 @@ impl Benchmark {
         format!("{family}{}", self.number)
     }
 
-    /// At most about `count` points spread over the true front, `[n][objectives]`; over the usual part of it where
-    /// [`Self::has_whole_front`] is false.
+    /// About `count` points spread over the true front, `[n][objectives]`; over the usual part of it where
+    /// [`Self::has_whole_front`] is false. More where its corners alone, or the pieces that it comes in, are more.
     pub fn front(&self, count: usize) -> Vec<f64> {
         front::points(self, count)
     }

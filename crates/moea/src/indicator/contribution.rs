@@ -6,7 +6,8 @@ use super::hypervolume::exclusive;
 /// minimised.
 ///
 /// `set` is `[n][objectives]` in one slice, `reference` `[objectives]`. Points that are dominated, repeated or not
-/// better than the reference in every objective, or not finite, contribute nothing. O(n²) for two and three objectives where few
+/// better than the reference in every objective, or not finite, contribute nothing, and neither does any beside a reference that is
+/// no number or where volumes are too large for one. O(n²) for two and three objectives where few
 /// points border on one, at worst O(n³); about n times more for each further one. Exact but for rounding, about
 /// 1e-15 of the largest box.
 pub fn contributions(set: &[f64], reference: &[f64]) -> Vec<f64> {

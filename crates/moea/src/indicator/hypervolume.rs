@@ -8,8 +8,8 @@
 ///
 /// `set` is `[n][objectives]` in one slice, `reference` `[objectives]`. Points that are not
 /// better than the reference in every objective, or not finite, count for nothing. NaN for a reference that is not finite
-/// or a slice of another width, and where the volume is too large for a number. O(n²) for three objectives,
-/// about n times more for each further one. Exact but for rounding, about 1e-15 a point.
+/// or a slice of another width, and no finite number where the volume is too large for one. O(n²) for three
+/// objectives, about n times more for each further one. Exact but for rounding, about 1e-15 a point.
 pub fn hypervolume(set: &[f64], reference: &[f64]) -> f64 {
     let m = reference.len();
     if m == 0 {
