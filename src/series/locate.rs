@@ -87,6 +87,20 @@ pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
     Some(Located { at_s: at_s - from_s, rms_rad, spread_rad, joints, others, pace })
 }
 
+/// Difference between a motion and a longer one in which its own time 0 lies at `at_s`, as a share of the motion; infinite where less than
+/// four fifths of it lie within. `None` if they share no joint or the motion does not move.
+pub fn left_at(motion: &Series, within: &Series, at_s: f64) -> Option<f64> {
+    let both = |track| {
+        let other = within.track(Track::name(track))?;
+        (other.kind() == track.kind()).then_some((track, other))
+    };
+    let pairs: Vec<(&Track, &Track)> = motion.tracks.iter().filter_map(both).collect();
+    let [from_s, to_s] = span_s(pairs.iter().map(|pair| pair.0))?;
+    let spread_rad = spread_rad(&pairs, from_s, to_s);
+    let left = left_rad(&pairs, [from_s, to_s], at_s + from_s, 1.0, INSTANTS);
+    (spread_rad >= LEAST_RAD).then(|| left.map_or(f64::INFINITY, |left_rad| left_rad / spread_rad))
+}
+
 /// The pace at which a motion fits clearly better than at 1, and what is then left, rad.
 fn paced(pairs: &[(&Track, &Track)], [from_s, to_s]: [f64; 2], at_s: f64) -> Option<(f64, f64)> {
     let length_s = to_s - from_s;

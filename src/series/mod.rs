@@ -23,7 +23,7 @@ pub use clock::{Clock, continuous_clock};
 pub use derivative::{LocalFit, each_local_quadratic, local_quadratic};
 pub(crate) use even::even_instants;
 pub use frozen::{frozen, seen};
-pub use locate::{Located, locate};
+pub use locate::{Located, left_at, locate};
 pub use noise::{Noise, noise};
 pub(crate) use noise::{is_sensed, over_window, white};
 pub use pose::{PosePair, PoseSample};

@@ -182,12 +182,15 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     // A missing plan is the reason for the join, no doubt.
     let mut remarks = run.remarks.clone().without(Code::PlanIsCommand).without(Code::OneSide);
     let [from_s, to_s] = plan.span_s();
-    let found = match inputs.at_s {
-        None => Some(plan.place(&run.planned, &inputs.plan, &topic, &mut remarks)?),
-        Some(_) => None,
+    let (commanded, located) = match inputs.at_s {
+        None => {
+            let (commanded, found) = plan.place(&run.planned, &inputs.plan, &topic, &mut remarks)?;
+            (commanded, Some(found))
+        }
+        Some(at_s) => (plan.commanded_at(sent, at_s - from_s, &inputs.plan, &topic, &mut remarks)?, None),
     };
-    let commanded = found.map_or(plan.command.is_some(), |(commanded, _)| commanded);
-    let located = found.map(|(_, located)| located);
+    // The run's time at which the plan's own is 0.
+    let zero_s = located.map_or_else(|| inputs.at_s.unwrap_or(0.0) - from_s, |located| located.at_s);
     // A table of set value and angle tells the plan, and what was sent for it is in its file.
     let is_plan = !commanded && !run.plan_is_command && run.source.planned_topic == Topics::default().planned;
     let keeps_plan = is_plan && plan.command.is_some() && located.is_some_and(|found| place::is_same(&found));
@@ -197,8 +200,6 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
             plan.check_command(&command.series, &inputs.plan, &command.topic)?;
         }
     }
-    // The run's time at which the plan's own is 0.
-    let zero_s = located.map_or_else(|| inputs.at_s.unwrap_or(0.0) - from_s, |located| located.at_s);
     let (start_s, end_s) = (zero_s + from_s, zero_s + to_s);
     let measured_s = run.measured.span_s().unwrap_or_default();
     if inputs.at_s.is_some() && (start_s > measured_s[1] || end_s < measured_s[0]) {

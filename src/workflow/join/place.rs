@@ -6,12 +6,14 @@ use super::{JoinFailure, gain::other_share};
 use crate::{
     log::{ReadOptions, SignalRole, WantedSignal, read_plan},
     remark::{Code, Remarks},
-    series::{Located, Series, Track, locate},
+    series::{Located, Series, Track, left_at, locate},
     workflow::carried::Carried,
 };
 
 /// Largest difference, as a share of the motion, at which a place is taken to be that of the plan.
 const FITS: f64 = 0.1;
+/// The same at a time that the caller gives, who may know of clocks that run apart.
+const ELSEWHERE: f64 = 0.3;
 /// What leaves less than this share of what the command leaves was the plan.
 const CLEARLY: f64 = 0.5;
 /// Largest difference, as a share, at which the sent signal is taken to be the planned one.
@@ -75,9 +77,7 @@ impl Plan {
             remarks.add(Code::SentOtherwise, 1, doubt);
         }
         if !commanded && self.command.is_some() {
-            let message =
-                format!("what was sent on {topic} is the plan of {}, not its command", path.display());
-            remarks.add(Code::SentOtherwise, 1, message);
+            remarks.add(Code::SentOtherwise, 1, the_plan(path, topic));
         }
         let message = "other places fit as well, the first is taken; --at SECONDS names another";
         remarks.add(Code::Ambiguous, found.others as u64, message);
@@ -105,6 +105,49 @@ impl Plan {
 }
 
 impl Plan {
+    /// Whether the command was sent, at a time that the caller gives for the plan's own 0; with what is to be doubted about that.
+    pub(super) fn commanded_at(
+        &self,
+        sent: Option<&Series>,
+        at_s: f64,
+        path: &Path,
+        topic: &str,
+        remarks: &mut Remarks,
+    ) -> Result<bool, JoinFailure> {
+        let Some(sent) = sent else { return Ok(self.command.is_some()) };
+        self.check_share(sent, at_s, path, topic)?;
+        if let Some(doubt) = self.doubt_at(sent, at_s, path, topic) {
+            remarks.add(Code::SentOtherwise, 1, doubt);
+        }
+        Ok(self.command.is_some() && !self.is_sent_itself(sent, at_s))
+    }
+
+    /// Whether what was sent then is the plan, and not the command that was made for it.
+    fn is_sent_itself(&self, sent: &Series, at_s: f64) -> bool {
+        let command = self.command.as_ref().and_then(|command| left_at(command, sent, at_s));
+        left_at(&self.planned, sent, at_s)
+            .zip(command)
+            .is_some_and(|(plan, command)| plan < CLEARLY * command)
+    }
+
+    /// What is to be said of a time that the caller gives: something else was sent then, or the plan itself.
+    fn doubt_at(&self, sent: &Series, at_s: f64, path: &Path, topic: &str) -> Option<String> {
+        let of = |motion: &Series| left_at(motion, sent, at_s);
+        let sides = [Some(&self.planned), self.command.as_ref()];
+        let left = sides.into_iter().flatten().filter_map(of).reduce(f64::min)?;
+        if left <= ELSEWHERE {
+            return self.is_sent_itself(sent, at_s).then(|| the_plan(path, topic));
+        }
+        let left = if left.is_finite() {
+            format!("leaves {:.0} % of its motion", 100.0 * left)
+        } else {
+            "is not in the log for all of it".to_owned()
+        };
+        Some(format!(
+            "what was sent on {topic} is not the plan at the time that --at gives: it {left}; without --at the time is found"
+        ))
+    }
+
     /// Whether what was sent, with the time 0 of the plan at `at_s`, is no other command of the same plan.
     fn check_share(&self, sent: &Series, at_s: f64, path: &Path, topic: &str) -> Result<(), JoinFailure> {
         let found = self.command.as_ref().and_then(|own| other_share(&self.planned, own, sent, at_s));
@@ -112,6 +155,10 @@ impl Plan {
             Err(JoinFailure::OtherShare { plan: path.to_owned(), topic: topic.to_owned(), share })
         })
     }
+}
+
+fn the_plan(path: &Path, topic: &str) -> String {
+    format!("what was sent on {topic} is the plan of {}, not its command", path.display())
 }
 
 /// Why what was sent may not be what the plan's file holds.

@@ -19,6 +19,7 @@ mod forms;
 mod historians;
 mod hostile;
 mod join;
+mod join_share;
 mod layout;
 #[cfg(unix)]
 mod next_run;

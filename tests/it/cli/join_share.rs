@@ -1,0 +1,29 @@
+//! `join` of a log in which another command of the same plan was sent: the plans are so alike that each fits where another was sent.
+
+use crate::support::{clean as done, run_line as hydrotrace, sample, stderr};
+
+#[test]
+fn another_command_of_the_same_plan_is_refused_with_its_share_at_a_given_time_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::copy(sample("tasks/task-1.toml"), at.join("task-1.toml")).unwrap();
+    for line in [
+        "plan task-1.toml --times 0,4.49,8.09,12.39,18.79,21.85 -o plan.mcap",
+        "simulate plan.mcap -o run.mcap",
+        "replan run.mcap --keep-plan --gain 0.5 -o half.mcap",
+        "replan run.mcap --keep-plan -o all.mcap",
+        "simulate half.mcap -o sent.mcap",
+    ] {
+        done(at, line);
+    }
+    for given in ["", " --at 2"] {
+        let line =
+            format!("join sent.mcap --planned /command/joint_states -o joined.mcap --plan all.mcap{given}");
+        let run = hydrotrace(at, &line);
+        let said = stderr(&run);
+        assert!(run.status.code() == Some(1) && !at.join("joined.mcap").exists(), "{line}: {said}");
+        let (_, share) = said.split_once("with ").unwrap_or_default();
+        let share: f64 = share.split(' ').next().and_then(|share| share.parse().ok()).unwrap_or(f64::NAN);
+        assert!((share - 50.0).abs() < 5.0 && said.contains("--gain"), "{line}: {said}");
+    }
+}
