@@ -3,10 +3,9 @@
 use super::{
     estimate::{Estimate, Problem, Workspace},
     interval::{QUANTILE, discrepancy::LIMIT},
-    model::STEP_S,
+    kept::kept_rad_s,
     parameters::{LIMITS, Priors, SHARED},
     robust::{cost, inefficiency},
-    run::{Run, Sample},
 };
 
 /// 95 % quantile of a chi-squared variable with one degree of freedom.
@@ -37,47 +36,6 @@ const SURELY: f64 = 100.0;
 /// Shortest and longest time over which that is asked, s.
 const KEPT_OVER_S: [f64; 2] = [0.2, 2.0];
 
-/// Largest mean speed over a time, growing for `way` 1 and shrinking for -1, rad/s.
-fn sustained_rad_s(runs: &[Run], way: f64, over_s: f64) -> f64 {
-    let at_s = |sample: &Sample| (sample.step as f64 + sample.part) * STEP_S;
-    let mut most = 0.0_f64;
-    for run in runs {
-        let mut later = 0;
-        for sample in &run.samples {
-            let until_s = at_s(sample) + over_s;
-            while run.samples.get(later).is_some_and(|later| at_s(later) < until_s) {
-                later += 1;
-            }
-            let Some(end) = run.samples.get(later) else { break };
-            let lasts_s = at_s(end) - at_s(sample);
-            if lasts_s < 1.5 * over_s {
-                most = most.max(way * (end.measured_rad - sample.measured_rad) / lasts_s);
-            }
-        }
-    }
-    most
-}
-
-/// Largest speed of which a joint makes both halves of a time, rad/s: what jumps there and back makes one.
-pub(super) fn steady_rad_s(runs: &[Run], way: f64, over_s: f64) -> f64 {
-    let at_s = |sample: &Sample| (sample.step as f64 + sample.part) * STEP_S;
-    let mut most = 0.0_f64;
-    for run in runs {
-        let after = |sample: &Sample, by_s: f64| {
-            let until_s = at_s(sample) + by_s;
-            let later = run.samples.partition_point(|later| at_s(later) < until_s);
-            run.samples.get(later).filter(|later| at_s(later) - at_s(sample) < 1.5 * by_s)
-        };
-        let speed = |a: &Sample, b: &Sample| way * (b.measured_rad - a.measured_rad) / (at_s(b) - at_s(a));
-        for sample in &run.samples {
-            let Some(middle) = after(sample, 0.5 * over_s) else { continue };
-            let Some(end) = after(middle, 0.5 * over_s) else { continue };
-            most = most.max(speed(sample, middle).min(speed(middle, end)));
-        }
-    }
-    most
-}
-
 /// Whether the joint kept its speed limits, growing and shrinking, for more than a moment between accelerations that are limited, as
 /// `shown` says; without such accelerations that is not asked.
 pub(super) fn sustained(problem: &Problem, x: &[f64], shown: [bool; 4]) -> [bool; 2] {
@@ -90,7 +48,7 @@ pub(super) fn sustained(problem: &Problem, x: &[f64], shown: [bool; 4]) -> [bool
     [(0, 1.0), (1, -1.0)].map(|(limit, way)| {
         let speed_rad_s = value(limit);
         let over_s = (speed_rad_s * rate_s).clamp(KEPT_OVER_S[0], KEPT_OVER_S[1]);
-        sustained_rad_s(problem.runs, way, over_s) >= KEPT * speed_rad_s
+        kept_rad_s(problem.runs, way, over_s, 1) >= KEPT * speed_rad_s
     })
 }
 

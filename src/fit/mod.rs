@@ -22,6 +22,7 @@ mod held_out;
 mod integral;
 mod interval;
 mod joint;
+mod kept;
 mod learn;
 mod model;
 mod normal;
@@ -95,7 +96,7 @@ impl Fit {
             let known = joint.unexplained_peak_rad;
             joint.unexplained_peak_rad = found.map(|found| left(known, found)).or(known);
             for (way, sign) in [1.0, -1.0].into_iter().enumerate() {
-                joint.has_reached(way, censor::steady_rad_s(&runs, sign, run::REACHED_OVER_S));
+                joint.has_reached(way, kept::kept_rad_s(&runs, sign, run::REACHED_OVER_S, 2));
             }
         }
         self

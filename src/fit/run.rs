@@ -76,6 +76,13 @@ pub(super) struct Sample {
     pub(super) fold: usize,
 }
 
+impl Sample {
+    /// Since the start of its run, s.
+    pub(super) fn at_s(&self) -> f64 {
+        (self.step as f64 + self.part) * STEP_S
+    }
+}
+
 /// A stretch of one log without gaps or long rests.
 #[derive(Debug, Clone)]
 pub(super) struct Run {

@@ -14,7 +14,7 @@ use super::{
     joint_trend::MOST_FALSE,
     note::{Intervention, Note, notes},
     run::date,
-    sides::Sides,
+    sides::{Drift, Sides},
     window::Window,
 };
 use crate::{
@@ -202,14 +202,21 @@ fn joint_effect(
     };
     // What the level was just before and just after.
     let (window, [since, until]) = sides(axis, values, window).at_once(window);
-    let (own_sides, drift) = sides(axis, values, window).without_drift(true);
+    let own_sides = sides(axis, values, window);
+    let drift = own_sides.drift().filter(|drift| own_sides.has(drift));
+    let without = |sides: Sides, drift: Option<&Drift>| match drift {
+        Some(drift) => sides.less(drift),
+        None => sides,
+    };
+    let own_sides = without(own_sides, drift.as_ref());
     let own = own_sides.change()?;
     let alike = |(other, by): &&(Axis, By)| *by == metric && other.machine != axis.machine;
     // Peak errors of other joints change in proportion.
     let change = |(other, of): (&Axis, &Values)| {
         let found = sides(other, of, window);
         // What they do by themselves all the time is no measure of what is left here.
-        let found = if drift.is_some() { found.without_drift(false).0 } else { found };
+        let of_its_own = found.drift().filter(|_| drift.is_some());
+        let found = without(found, of_its_own.as_ref());
         let same = other.joint == axis.joint && other.unit == axis.unit;
         let scale = if metric == By::Peak && !same { own_sides.level / found.level } else { 1.0 };
         found.change().map(|change| scale * change).filter(|change| change.is_finite())
@@ -226,7 +233,8 @@ fn joint_effect(
     let told = Some(of_same.clone()).filter(|same| same.len() >= FEWEST_OTHERS).or_else(of_joints);
     let usual = told.map(|told| (median(told.clone()), SIGMA_PER_MAD * mad(&told), told.len()));
     let (usual_change, spread, count) = usual.unwrap_or((0.0, 0.0, 1));
-    let error = (1.2533 * spread / (count as f64).sqrt()).hypot(drift.map_or(0.0, |[_, error]| error));
+    let error =
+        (1.2533 * spread / (count as f64).sqrt()).hypot(drift.as_ref().map_or(0.0, Drift::error_of_change));
     let found = difference(&own_sides.before, &own_sides.after, (usual_change, error, spread))?;
     let as_much =
         of_same.iter().filter(|other| (*other - usual_change).abs() >= (own - usual_change).abs()).count();
@@ -239,7 +247,7 @@ fn joint_effect(
         interval_95: found.interval,
         since,
         until,
-        drift_per_day: drift.map(|[slope, _]| slope),
+        drift_per_day: drift.map(|drift| drift.per_day),
         usual_change: usual.map(|(change, ..)| change),
         rank: 1 + as_much,
         of: 1 + of_same.len(),

@@ -30,6 +30,30 @@ pub(super) struct Sides {
     at_us: [Vec<i64>; 2],
 }
 
+/// A level that changes evenly before as after.
+pub(super) struct Drift {
+    pub(super) per_day: f64,
+    /// Its standard error.
+    error: f64,
+    /// Probability of such a slope by chance.
+    p: f64,
+    /// From the middle of the runs before to that of the runs after.
+    apart_days: f64,
+    /// Between the last run before and the first one after.
+    at_days: f64,
+}
+
+impl Drift {
+    /// What its error makes of the change.
+    pub(super) fn error_of_change(&self) -> f64 {
+        self.error * self.apart_days
+    }
+}
+
+fn in_days(us: i64) -> f64 {
+    us as f64 / 1e6 / SECONDS_PER_DAY
+}
+
 impl Sides {
     pub(super) fn of(
         history: &History,
@@ -68,18 +92,13 @@ impl Sides {
         (self.before.len() >= 2 && self.after.len() >= 2).then(|| mean(&self.after) - mean(&self.before))
     }
 
-    /// The same without a drift that goes on before as after: what is left is what changed at once. With that drift a day and what its error
-    /// makes of the change. Where it is `asked` for, only if it is sure, and makes the change smaller or is very sure: the steepest slope of
-    /// many by chance would be taken for one.
-    pub(super) fn without_drift(self, asked: bool) -> (Self, Option<[f64; 2]>) {
-        let days = self
-            .at_us
-            .each_ref()
-            .map(|side| side.iter().map(|us| *us as f64 / 1e6 / SECONDS_PER_DAY).collect::<Vec<f64>>());
-        let sides = [&self.before, &self.after];
+    /// The drift that goes on before as after: one slope within both sides. `None` for too few runs.
+    pub(super) fn drift(&self) -> Option<Drift> {
+        let sides = [&self.before, &self.after].into_iter().zip(&self.at_us);
         let (mut square, mut product, mut total) = (0.0, 0.0, 0.0);
-        for (days, levels) in days.iter().zip(sides) {
-            let (day, level) = (mean(days), mean(levels));
+        for (levels, at_us) in sides {
+            let days: Vec<f64> = at_us.iter().copied().map(in_days).collect();
+            let (day, level) = (mean(&days), mean(levels));
             for (at, value) in days.iter().zip(levels) {
                 square += (at - day).powi(2);
                 product += (at - day) * (value - level);
@@ -87,39 +106,43 @@ impl Sides {
             }
         }
         let freedom = (self.before.len() + self.after.len()) as f64 - 3.0;
+        let [before, after] = self.at_us.each_ref().map(|side| side.iter().copied().map(in_days));
+        let at_days = 0.5 * (before.clone().reduce(f64::max)? + after.clone().reduce(f64::min)?);
         if freedom < 3.0 || square <= 0.0 {
-            return (self, None);
+            return None;
         }
-        let slope = product / square;
-        let error = ((total - slope * product).max(0.0) / freedom / square).sqrt();
-        let chance = |t: StudentsT| if error > 0.0 { 2.0 * t.cdf(-(slope / error).abs()) } else { 0.0 };
+        let per_day = product / square;
+        let error = ((total - per_day * product).max(0.0) / freedom / square).sqrt();
+        let chance = |t: StudentsT| if error > 0.0 { 2.0 * t.cdf(-(per_day / error).abs()) } else { 0.0 };
         let p = StudentsT::new(0.0, 1.0, freedom).map_or(1.0, chance);
-        let apart_days = mean(&days[1]) - mean(&days[0]);
+        let apart_days = mean(&after.collect::<Vec<_>>()) - mean(&before.collect::<Vec<_>>());
+        Some(Drift { per_day, error, p, apart_days, at_days })
+    }
+
+    /// Whether a drift is sure, and makes the change smaller or is very sure: the steepest slope of many by chance would be taken for one.
+    pub(super) fn has(&self, drift: &Drift) -> bool {
         let change = mean(&self.after) - mean(&self.before);
-        let smaller = (change - slope * apart_days).abs() < change.abs();
-        let surely = !asked || p < VERY_SURELY || p < SURELY && smaller;
-        let last = days[0].iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let first = days[1].iter().copied().fold(f64::INFINITY, f64::min);
-        let at = 0.5 * (last + first);
-        if !surely || !at.is_finite() {
-            return (self, None);
-        }
-        let level = |levels: &[f64], days: &[f64]| {
-            levels.iter().zip(days).map(|(level, day)| level - slope * (day - at)).collect()
+        let smaller = (change - drift.per_day * drift.apart_days).abs() < change.abs();
+        drift.p < VERY_SURELY || drift.p < SURELY && smaller
+    }
+
+    /// The same without a drift: what is left is what changed at once.
+    pub(super) fn less(self, drift: &Drift) -> Self {
+        let level = |levels: &[f64], at_us: &[i64]| {
+            let drifted = |us: &i64| drift.per_day * (in_days(*us) - drift.at_days);
+            levels.iter().zip(at_us).map(|(level, us)| level - drifted(us)).collect()
         };
-        let (before, after) = (level(&self.before, &days[0]), level(&self.after, &days[1]));
-        (Self { before, after, ..self }, Some([slope, error * apart_days]))
+        let [before, after] = [(&self.before, &self.at_us[0]), (&self.after, &self.at_us[1])]
+            .map(|(levels, at)| level(levels, at));
+        Self { before, after, ..self }
     }
 
     /// The window narrowed to what the level was just before and just after, where it changed earlier or later by itself, and the
     /// ends of that, UTC.
     pub(super) fn at_once(&self, window: Window) -> (Window, [Option<String>; 2]) {
         let of = |levels: &[f64], at_us: &[i64], is_before: bool| {
-            let points: Vec<(f64, f64)> = at_us
-                .iter()
-                .map(|us| *us as f64 / 1e6 / SECONDS_PER_DAY)
-                .zip(levels.iter().copied())
-                .collect();
+            let points: Vec<(f64, f64)> =
+                at_us.iter().map(|us| in_days(*us)).zip(levels.iter().copied()).collect();
             let found = pieces(&points).filter(|found| found.p < SURELY)?;
             let near = if is_before { found.pieces.last()? } else { found.pieces.first()? };
             let runs = near.points.clone();
@@ -132,7 +155,7 @@ impl Sides {
         };
         let from_us = of(&self.before, &self.at_us[0], true);
         let until_us = of(&self.after, &self.at_us[1], false);
-        let said = [from_us, until_us].map(|us| date(us? as f64 / 1e6 / SECONDS_PER_DAY));
+        let said = [from_us, until_us].map(|us| date(in_days(us?)));
         (window.within(from_us, until_us), said)
     }
 }

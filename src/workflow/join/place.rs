@@ -83,9 +83,7 @@ impl Plan {
         remarks.add(Code::Ambiguous, found.others as u64, message);
         Ok((commanded, found))
     }
-}
 
-impl Plan {
     /// Whether what was sent beside the plan is the command that was made for it.
     pub(super) fn check_command(&self, sent: &Series, path: &Path, topic: &str) -> Result<(), JoinFailure> {
         let Some(found) = self.command.as_ref().and_then(|command| locate(command, sent)) else {
@@ -102,9 +100,7 @@ impl Plan {
             share: share(&found),
         })
     }
-}
 
-impl Plan {
     /// Whether the command was sent, at a time that the caller gives for the plan's own 0; with what is to be doubted about that.
     pub(super) fn commanded_at(
         &self,

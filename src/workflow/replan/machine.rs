@@ -7,7 +7,7 @@ use super::{
     Inputs, ReplanFailure,
 };
 use crate::{
-    fit::{Fit, JointFit, Observation},
+    fit::{Estimated, Fit, JointFit, Observation},
     log::Recording,
     remark::{Code, Remarks},
 };
@@ -40,29 +40,29 @@ pub(super) fn machine(
             _ if any && !all => found.map(|peak_rad| SEEN * peak_rad),
             _ => found,
         };
-        let known = file.fit.clone();
+        let known: Vec<JointFit> = file.fit.joints.clone();
         let fit = file.fit.held_against(&seen, left);
-        for (joint, held) in known.joints.iter().zip(&fit.joints) {
-            let limits =
-                |joint: &JointFit| [joint.speed_limit_growing_rad_s, joint.speed_limit_shrinking_rad_s];
-            for (before, after) in limits(joint).into_iter().zip(limits(held)) {
-                let (Some([_, most]), None, Some(reached)) =
-                    (before.interval, after.interval, after.lower_bound)
-                else {
-                    continue;
-                };
-                let (name, kind) = (&joint.name, joint.kind);
-                let message = format!(
-                    "{name} goes {}/s in these runs, and {} says {}/s at most: that limit is not used",
-                    kind.says(reached),
-                    path.display(),
-                    kind.says(most)
-                );
-                doubts.add(Code::PoorFit, 1, message);
-            }
+        for message in known.iter().zip(&fit.joints).flat_map(|(known, held)| disproved(known, held, path)) {
+            doubts.add(Code::PoorFit, 1, message);
         }
         return Ok((fit, file.logs, doubts));
     }
     let fitted = fit::of(logs, observed).map_err(fit::FitFailure::from)?;
     Ok((fitted.fit, fitted.runs.into_iter().map(|run| run.log).collect(), fitted.remarks))
+}
+
+/// The speed limits of a joint, from a file, that it was beyond in the runs that it was held against.
+fn disproved(known: &JointFit, held: &JointFit, file: &Path) -> Vec<String> {
+    let limits = |joint: &JointFit| [joint.speed_limit_growing_rad_s, joint.speed_limit_shrinking_rad_s];
+    let of_way = |(known_limit, held_limit): (Estimated, Estimated)| {
+        let [_, most] = known_limit.interval.filter(|_| held_limit.interval.is_none())?;
+        Some(format!(
+            "{} goes {}/s in these runs, and {} says {}/s at most: that limit is not used",
+            known.name,
+            known.kind.says(held_limit.lower_bound?),
+            file.display(),
+            known.kind.says(most)
+        ))
+    };
+    limits(known).into_iter().zip(limits(held)).filter_map(of_way).collect()
 }
