@@ -1,6 +1,11 @@
 //! `replan`
 
-use std::{collections::BTreeMap, ffi::OsString, ops::ControlFlow, path::PathBuf};
+use std::{
+    collections::BTreeMap,
+    ffi::OsString,
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+};
 
 use super::{
     CliError, Outcome, Run,
@@ -110,9 +115,12 @@ struct ChangeArgs {
 }
 
 impl ChangeArgs {
-    /// Options that hold for the next command, too: bounds, and what must not change.
-    fn words_of_next(&self) -> Vec<String> {
+    /// Options that hold for the next command, too: the machine, bounds, and what must not change.
+    fn words_of_next(&self, limits: Option<&Path>) -> Vec<String> {
         let mut words = Vec::new();
+        if let Some(limits) = limits {
+            words.extend(["--limits".to_owned(), kit::argument(limits)]);
+        }
         let plain = |value: f64| (1e9 * value).round() / 1e9;
         if let Some(most_rad) = self.max_correction_deg {
             words.push(format!("--max-correction-deg={}", plain(most_rad.to_degrees())));
@@ -198,7 +206,7 @@ impl Run for Args {
             let sending = next::to_send(
                 self.output.as_deref(),
                 &self.logs,
-                (&again, &self.sent.words_of_next(), &self.change.words_of_next()),
+                (&again, &self.sent.words_of_next(), &self.change.words_of_next(self.limits.as_deref())),
                 whole,
             );
             write_file(file, words::page(&replanned, &sending).as_bytes())?;
@@ -206,7 +214,8 @@ impl Run for Args {
         let result = match &self.output {
             _ if self.json => ReplanDocument::of(&replanned).json(),
             Some(path) => {
-                let words = (&*self.sent.words_of_next(), &*self.change.words_of_next());
+                let words =
+                    (&*self.sent.words_of_next(), &*self.change.words_of_next(self.limits.as_deref()));
                 let next = next::next_written(path, &self.logs, words);
                 target.text(&words::document(&replanned).with_above_remarks(next))
             }

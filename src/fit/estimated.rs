@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::FitError;
+
 /// An estimated number.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -20,6 +22,16 @@ pub struct Estimated {
 }
 
 impl Estimated {
+    /// Holds what a file says to what a magnitude can be; a limit that never showed is infinite.
+    pub(super) fn check(&self, joint: &str, key: &'static str) -> Result<(), FitError> {
+        let ends = self.interval.into_iter().flatten();
+        let told = [self.value, self.lower_bound, self.upper_bound].into_iter().flatten().chain(ends);
+        let bad = told.into_iter().find(|found| found.is_nan() || *found < 0.0);
+        bad.map_or(Ok(()), |found| {
+            Err(FitError::Value { joint: joint.to_owned(), key, found, least: 0.0, most: f64::INFINITY })
+        })
+    }
+
     /// The same where another model explains the data as well, with another value: the interval holds both, and where that
     /// one lies outside, the data do not decide.
     pub(super) fn with_rival(self, other: f64) -> Self {

@@ -2,6 +2,7 @@
 
 use super::{
     Character, Estimated, HeldOut, Oscillation,
+    beyond::beyond,
     censor::{ASKED, seen, sustained},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
@@ -64,7 +65,13 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     let mut problem = Problem {
         runs: &some,
         priors: &priors,
-        shown: Shown { limits: asked_for(runs, limits), edge: false, late: false, integral: true },
+        shown: Shown {
+            limits: asked_for(runs, limits),
+            edge: false,
+            late: false,
+            beyond: false,
+            integral: true,
+        },
         part: Part::All,
         inefficiency: INEFFICIENCY,
     };
@@ -85,6 +92,10 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         }
         problem.shown.limits = seen;
         found = problem.descend(found.x, 30, &mut workspace);
+    }
+    if let Some(beyond) = beyond(&problem, &found, &mut workspace) {
+        problem.shown.beyond = true;
+        found = beyond;
     }
     if let Some(without) = integral::without(&problem, &found, &mut workspace) {
         problem.shown.integral = false;

@@ -11,6 +11,7 @@
 //! Smooth runs never reach the limits of speed and acceleration, which then are bounds and no
 //! numbers. Discrepancies were found on simulated machines, and no hardware was at hand.
 
+mod beyond;
 mod censor;
 mod edge;
 mod error;

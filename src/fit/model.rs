@@ -12,7 +12,8 @@ pub const STEP_S: f64 = 0.01;
 /// The set values, angle and speed, come late by a `delay` and pass a filter of first order. The loop wants a speed
 /// w = `feed_forward` * sent speed + `position_gain` * error + integral, which arrives after the dead time; the spool follows it with a play of ±`hysteresis`. What is left beyond the dead band,
 /// b, gives the speed b² / (b + `edge`). Scaled by exp(±`asymmetry` / 2) for growing and shrinking angles and by the
-/// pose, and clipped to the speed limits, it is approached with a time constant, within the acceleration limits.
+/// pose, and clipped to what the valve opens to, it is approached with a time constant, within the acceleration limits; of that the
+/// joint has what its speed limits leave. A valve that `opens_beyond` them takes time to come back.
 /// Speeds, gains and dead band are as the joint shows them: a loop gain that no log can tell apart is in all of them.
 ///
 /// Pairs are for growing and for shrinking angles, both positive; a limit that no data showed is
@@ -69,6 +70,9 @@ pub struct Model {
     /// Delay of the set values before the loop, or of the stamps of measured angles, s.
     #[serde(default)]
     pub set_value_delay_s: f64,
+    /// How far the valve opens beyond what the largest speeds take, as a share of that; 0 where it opens no farther.
+    #[serde(default)]
+    pub opens_beyond: f64,
     /// Full width of the play before the sensor, rad.
     pub backlash_rad: f64,
 }
@@ -96,6 +100,7 @@ impl Model {
         edge_rad_s: 0.0,
         set_value_filter_s: 0.0,
         set_value_delay_s: 0.0,
+        opens_beyond: 0.0,
         backlash_rad: 0.0,
     };
 
@@ -117,6 +122,7 @@ impl Model {
             ("edge_rad_s", self.edge_rad_s),
             ("set_value_filter_s", self.set_value_filter_s),
             ("set_value_delay_s", self.set_value_delay_s),
+            ("opens_beyond", self.opens_beyond),
             ("backlash_rad", self.backlash_rad),
         ];
         let limits = [

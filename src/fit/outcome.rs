@@ -143,7 +143,10 @@ impl Fit {
     ///
     /// [`FitError::Value`].
     pub fn check(&self) -> Result<(), FitError> {
-        self.joints.iter().try_for_each(|joint| joint.model.check(&joint.name))
+        self.joints.iter().try_for_each(|joint| {
+            joint.quantities().iter().try_for_each(|(key, found)| found.check(&joint.name, key))?;
+            joint.model.check(&joint.name)
+        })
     }
 }
 
@@ -151,6 +154,24 @@ impl Fit {
 const NEAR: f64 = 0.8;
 
 impl JointFit {
+    /// Every number that is told of a joint, by its name with its unit.
+    pub const fn quantities(&self) -> [(&'static str, Estimated); 12] {
+        [
+            ("lag_s", self.lag_s),
+            ("dead_band_rad_s", self.dead_band_rad_s),
+            ("dead_band_error_rad", self.dead_band_error_rad),
+            ("position_gain_1_s", self.position_gain_1_s),
+            ("integral_gain_1_s2", self.integral_gain_1_s2),
+            ("feed_forward", self.feed_forward),
+            ("set_values_late_s", self.set_values_late_s),
+            ("gain_ratio", self.gain_ratio),
+            ("speed_limit_growing_rad_s", self.speed_limit_growing_rad_s),
+            ("speed_limit_shrinking_rad_s", self.speed_limit_shrinking_rad_s),
+            ("acceleration_limit_growing_rad_s2", self.acceleration_limit_growing_rad_s2),
+            ("acceleration_limit_shrinking_rad_s2", self.acceleration_limit_shrinking_rad_s2),
+        ]
+    }
+
     /// The same where no model predicts the joint: it is taken to be where it is sent, no number is known, and limits
     /// are what was reached.
     pub(super) fn without_model(self) -> Self {

@@ -7,7 +7,7 @@ use super::model::Model;
 use crate::units::DEGREE_RAD;
 
 /// Number of parameters that all runs share.
-pub(super) const SHARED: usize = 21;
+pub(super) const SHARED: usize = 22;
 
 pub(super) const DEAD_TIME: usize = 0;
 pub(super) const TIME_CONSTANT: usize = 1;
@@ -28,6 +28,7 @@ pub(super) const LIMITS: usize = 14;
 pub(super) const EDGE: usize = LIMITS + 4;
 pub(super) const FILTER: usize = EDGE + 1;
 pub(super) const SET_VALUE_DELAY: usize = FILTER + 1;
+pub(super) const BEYOND: usize = SET_VALUE_DELAY + 1;
 
 /// Width of the play between joint and sensor that every model has, rad: a free one stands in for the lag of smooth runs.
 const BACKLASH_RAD: f64 = 0.05 * DEGREE_RAD;
@@ -73,6 +74,7 @@ const PRIORS: [Prior; SHARED] = [
     positive(2.0 * DEGREE_RAD, 1.0),
     positive(0.1, 0.8),
     positive(0.05, 1.0),
+    positive(1.0, 1.0),
 ];
 
 /// Parts that a model has only where the data show them.
@@ -84,6 +86,8 @@ pub(super) struct Shown {
     pub(super) edge: bool,
     /// Set values that come late, by a filter and a delay.
     pub(super) late: bool,
+    /// A valve that opens beyond what the largest speeds take.
+    pub(super) beyond: bool,
     /// Integral action of the position loop.
     pub(super) integral: bool,
 }
@@ -94,6 +98,7 @@ impl Shown {
         match parameter {
             EDGE => self.edge,
             FILTER | SET_VALUE_DELAY => self.late,
+            BEYOND => self.beyond,
             INTEGRAL_GAIN => self.integral,
             LIMITS.. => self.limits.get(parameter - LIMITS).is_none_or(|shown| *shown),
             _ => true,
@@ -151,6 +156,7 @@ impl Priors {
             edge_rad_s: if shown.edge { value(EDGE) } else { 0.0 },
             set_value_filter_s: if shown.late { value(FILTER) } else { 0.0 },
             set_value_delay_s: if shown.late { value(SET_VALUE_DELAY) } else { 0.0 },
+            opens_beyond: if shown.beyond { value(BEYOND) } else { 0.0 },
             backlash_rad: BACKLASH_RAD,
         }
     }

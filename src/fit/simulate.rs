@@ -85,6 +85,7 @@ fn lanes<const N: usize>(
     let (asymmetry, bent) = (of(|m| 0.5 * m.asymmetry), of(|m| m.pose_asymmetry_1_rad));
     let fastest = of(|m| m.speed_limit_rad_s[0].unwrap_or(FASTEST_RAD_S));
     let slowest = of(|m| -m.speed_limit_rad_s[1].unwrap_or(FASTEST_RAD_S));
+    let opens = of(|m| 1.0 + m.opens_beyond);
     let most = of(|m| m.acceleration_limit_rad_s2[0].unwrap_or(f64::INFINITY) * STEP_S);
     let least = of(|m| -m.acceleration_limit_rad_s2[1].unwrap_or(f64::INFINITY) * STEP_S);
     let approach = of(|m| -(-STEP_S / m.time_constant_s.max(1e-4)).exp_m1());
@@ -99,6 +100,8 @@ fn lanes<const N: usize>(
     let part = delay.map(f64::fract);
     let mut angle: [f64; N] = std::array::from_fn(|i| start[i].angle_rad - offset[i]);
     let (mut seen, mut speed) = (angle, start.map(|start| start.speed_rad_s));
+    // The speed that the opening of the valve would give without limit.
+    let mut opening = speed;
     let mut spool = [0.0; N];
     let mut set = [sent.first().copied().unwrap_or_default(); N];
     let mut integral = start.map(|start| start.integral_rad_s);
@@ -139,12 +142,13 @@ fn lanes<const N: usize>(
                 target[i] *= if edge[i] > 0.0 { beyond / (beyond + edge[i]) } else { 1.0 };
                 let off = within(angle[i], lowest[i], highest[i]) - 0.5 * (lowest[i] + highest[i]);
                 let exponent = way * (asymmetry[i] + bent[i] * off) + (slope[i] + curve[i] * off) * off;
-                target[i] = within(exp(exponent) * target[i], slowest[i], fastest[i]);
+                target[i] = within(exp(exponent) * target[i], opens[i] * slowest[i], opens[i] * fastest[i]);
             }
         }
         for i in 0..N {
             let before = speed[i];
-            speed[i] += within(approach[i] * (target[i] - speed[i]), least[i], most[i]);
+            opening[i] += within(approach[i] * (target[i] - opening[i]), least[i], most[i]);
+            speed[i] = within(opening[i], slowest[i], fastest[i]);
             angle[i] += 0.5 * STEP_S * (before + speed[i]);
         }
     }

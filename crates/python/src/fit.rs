@@ -46,21 +46,7 @@ impl Fit {
 }
 
 fn rows(joint: &JointFit) -> Vec<Vec<Cell>> {
-    let quantities: [(&str, &Estimated); 12] = [
-        ("lag_s", &joint.lag_s),
-        ("dead_band_rad_s", &joint.dead_band_rad_s),
-        ("dead_band_error_rad", &joint.dead_band_error_rad),
-        ("position_gain_1_s", &joint.position_gain_1_s),
-        ("integral_gain_1_s2", &joint.integral_gain_1_s2),
-        ("feed_forward", &joint.feed_forward),
-        ("set_values_late_s", &joint.set_values_late_s),
-        ("gain_ratio", &joint.gain_ratio),
-        ("speed_limit_growing_rad_s", &joint.speed_limit_growing_rad_s),
-        ("speed_limit_shrinking_rad_s", &joint.speed_limit_shrinking_rad_s),
-        ("acceleration_limit_growing_rad_s2", &joint.acceleration_limit_growing_rad_s2),
-        ("acceleration_limit_shrinking_rad_s2", &joint.acceleration_limit_shrinking_rad_s2),
-    ];
-    let row = |(name, known): (&str, &Estimated)| {
+    let row = |(name, known): (&str, Estimated)| {
         vec![
             Cell::from(joint.name.as_str()),
             Cell::from(name),
@@ -73,7 +59,7 @@ fn rows(joint: &JointFit) -> Vec<Vec<Cell>> {
             Cell::from(joint.held_out_r2),
         ]
     };
-    quantities.map(row).into()
+    joint.quantities().map(row).into()
 }
 
 /// Fits every joint to all logs of one machine: dead time, dead band, gains, limits.

@@ -230,6 +230,12 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
              wide-open valve."
         )
     }));
+    lines.extend(of(&|joint| joint.model_holds && joint.model.opens_beyond > 0.0).map(|joints| {
+        format!(
+            "The valve of {joints} opens farther than the largest speed takes, so something behind it, a pump or a flow regulator, \
+             limits the speed: a joint at its limit comes back from it late."
+        )
+    }));
     let late = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.set_values_late_s() > 0.0);
     let late: Vec<String> = late.map(|joint| format!("{} {}", joint.name, LATE.alone(joint))).collect();
     lines.extend((!late.is_empty()).then(|| {

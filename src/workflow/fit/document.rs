@@ -89,8 +89,9 @@ pub struct LimitsFile {
 const HEAD: &str = "# What a machine does with what it is sent, as `hydrotrace fit` found it in logs; for
 # `hydrotrace replan --limits`. Radians and seconds. A quantity has a value and its 95 % interval, or
 # the lower_bound that was reached; identified = false: the logs do not decide it. Pairs are for
-# growing and for shrinking angles; inf: no limit showed. Of a joint of kind slides a radian
-# stands for a metre.
+# growing and for shrinking angles; inf: no limit showed. What will
+# come is predicted by the numbers of joints.model; the others say what is known of them. Of a
+# joint of kind slides a radian stands for a metre.
 ";
 
 impl LimitsFile {
@@ -132,6 +133,7 @@ impl LimitsFile {
         let path = path.to_owned();
         let file: Self = match toml::from_str(text) {
             Ok(file) => file,
+            Err(_) if text.trim_start().starts_with('{') => return Err(FitFailure::Document { path }),
             Err(source) => return Err(FitFailure::Limits { path, source: Box::new(source) }),
         };
         if file.format != LIMITS_FORMAT {
@@ -191,5 +193,13 @@ mod tests {
         let (path, file) = (folder.path().join("limits.toml"), LimitsFile::of(&fitted));
         std::fs::write(&path, file.toml().unwrap()).unwrap();
         assert_eq!(LimitsFile::read(&path).unwrap(), file);
+        let json = LimitsFile::parse(&path, &document.json()).unwrap_err();
+        assert!(json.to_string().contains("is JSON, the document of a fit"), "{json}");
+        for (value, said) in [(f64::NAN, "lag_s of joint J1 is NaN"), (-1.0, "lag_s of joint J1 is -1")] {
+            let mut edited = file.clone();
+            edited.fit.joints[0].lag_s.value = Some(value);
+            let refused = LimitsFile::parse(&path, &edited.toml().unwrap()).unwrap_err();
+            assert!(crate::document::explained(&refused).contains(said), "{refused:?}");
+        }
     }
 }

@@ -21,6 +21,13 @@ pub enum FitFailure {
     /// A file with limits cannot be read.
     #[error("cannot read {}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
+    /// The document of a fit, for programs.
+    #[error(
+        "{} is JSON, the document of a fit; limits are TOML: give -o of `hydrotrace fit` a name that ends in .toml, and that file \
+         here",
+        path.display()
+    )]
+    Document { path: PathBuf },
     /// A file is no limits.
     #[error("{} does not hold limits; `hydrotrace fit LOG -o FILE` writes some", path.display())]
     Limits { path: PathBuf, source: Box<toml::de::Error> },

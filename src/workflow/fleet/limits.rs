@@ -10,17 +10,10 @@ use crate::{
     workflow::fit,
 };
 
-/// A number of a joint: its name with its unit, and where a fit has it.
-type Quantity = (&'static str, fn(&JointFit) -> &Estimated);
-
-const QUANTITIES: [Quantity; 7] = [
-    ("lag_s", |joint| &joint.lag_s),
-    ("dead_band_rad_s", |joint| &joint.dead_band_rad_s),
-    ("dead_band_error_rad", |joint| &joint.dead_band_error_rad),
-    ("position_gain_1_s", |joint| &joint.position_gain_1_s),
-    ("gain_ratio", |joint| &joint.gain_ratio),
-    ("speed_limit_growing_rad_s", |joint| &joint.speed_limit_growing_rad_s),
-    ("speed_limit_shrinking_rad_s", |joint| &joint.speed_limit_shrinking_rad_s),
+/// Numbers that a fleet is followed by.
+const FOLLOWED: [&str; 7] = [
+    "lag_s", "dead_band_rad_s", "dead_band_error_rad", "position_gain_1_s", "gain_ratio",
+    "speed_limit_growing_rad_s", "speed_limit_shrinking_rad_s",
 ];
 
 /// The rows of a run; where it cannot be fitted, a remark that says why.
@@ -31,7 +24,9 @@ pub(super) fn rows(log: &Log, inputs: Vec<Input>, run_id: &str, read: &ReadOptio
     });
     match fitted {
         Ok(fitted) => {
-            let of = |joint| QUANTITIES.iter().map(move |quantity| row(log, run_id, joint, quantity));
+            let followed =
+                |joint: &JointFit| joint.quantities().into_iter().filter(|(name, _)| FOLLOWED.contains(name));
+            let of = |joint| followed(joint).map(move |quantity| row(log, run_id, joint, quantity));
             fitted.fit.joints.iter().flat_map(of).map(|row| (Name::Limits, row)).collect()
         }
         Err(error) => {
@@ -42,14 +37,13 @@ pub(super) fn rows(log: &Log, inputs: Vec<Input>, run_id: &str, read: &ReadOptio
     }
 }
 
-fn row(log: &Log, run_id: &str, joint: &JointFit, (name, of): &Quantity) -> Vec<Cell> {
-    let found = of(joint);
+fn row(log: &Log, run_id: &str, joint: &JointFit, (name, found): (&str, Estimated)) -> Vec<Cell> {
     let [low, high] = found.interval.map_or([None; 2], |interval| interval.map(Some));
     vec![
         Cell::from(run_id),
         Cell::from(log.machine.as_deref()),
         Cell::from(joint.name.as_str()),
-        Cell::from(*name),
+        Cell::from(name),
         Cell::from(found.value),
         Cell::from(low),
         Cell::from(high),
@@ -75,7 +69,7 @@ mod tests {
     #[test]
     fn a_run_gives_each_quantity_of_each_joint_and_one_that_is_no_run_a_remark() {
         let found = of("task-1-run.mcap");
-        assert_eq!(found.len(), 6 * QUANTITIES.len());
+        assert_eq!(found.len(), 6 * FOLLOWED.len());
         assert!(
             found
                 .iter()

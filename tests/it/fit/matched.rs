@@ -31,6 +31,7 @@ const MODEL: Model = Model {
     edge_rad_s: 0.0,
     set_value_filter_s: 0.0,
     set_value_delay_s: 0.0,
+    opens_beyond: 0.0,
     backlash_rad: 0.05 * DEGREE_RAD,
 };
 
@@ -109,6 +110,23 @@ fn edges_that_open_gradually_are_found_where_they_are_and_nowhere_else() {
         assert!(plain.edge_rad_s <= 0.0, "{seed}: {plain:?}");
         assert!((found.edge_rad_s / edged.edge_rad_s).ln().abs() < 0.3, "{seed}: {found:?}");
         assert!((found.feed_forward / edged.feed_forward).ln().abs() < 0.1, "{seed}: {found:?}");
+    }
+}
+
+#[test]
+fn a_valve_that_opens_beyond_the_largest_speed_is_found_where_it_is_and_nowhere_else() {
+    let plan = trial(&["J"]);
+    let opens = Model { opens_beyond: 1.5, ..QUICK };
+    for seed in 1..=3 {
+        let [plain, found] = [&QUICK, &opens].map(|model| {
+            let fit = fitted(&[(&plan, &measured_of(model, &plan, seed, |_| false))]);
+            fit.joints[0].clone()
+        });
+        assert!(plain.model.opens_beyond <= 0.0, "{seed}: {plain:?}");
+        assert!((found.model.opens_beyond / opens.opens_beyond).ln().abs() < 0.5, "{seed}: {found:?}");
+        assert!((found.lag_s.value.unwrap() / QUICK.lag_s()).ln().abs() < 0.1, "{seed}: {found:?}");
+        let gain = found.position_gain_1_s.value.unwrap() / QUICK.position_gain_1_s;
+        assert!(found.model_holds && gain.ln().abs() < 0.1, "{seed}: {found:?}");
     }
 }
 

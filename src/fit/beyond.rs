@@ -1,0 +1,30 @@
+//! Whether a valve opens beyond what the largest speeds of its joint take, as where the flow is limited behind it: it then takes time
+//! to come back, and a joint at its limit answers late.
+
+use super::{
+    estimate::{Estimate, Problem, Workspace},
+    parameters::BEYOND,
+};
+
+/// The cost, a logarithm of likelihood, must fall by this.
+const GAIN: f64 = 12.0;
+
+/// A smaller share is none.
+const LEAST: f64 = 0.1;
+
+/// Rounds of the descent with such a valve.
+const ROUNDS: usize = 38;
+
+/// The estimate with such a valve, if the data show one.
+pub(super) fn beyond(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Option<Estimate> {
+    if problem.shown.limits[..2] == [false; 2] {
+        return None;
+    }
+    let mut opened = problem.clone();
+    opened.shown.beyond = true;
+    let before = problem.cost_at(&found.x, found.scale_rad, workspace);
+    let with = opened.descend(found.x.clone(), ROUNDS, workspace);
+    let gained = before - opened.cost_at(&with.x, found.scale_rad, workspace);
+    let share = problem.priors.of(BEYOND).value(with.x[BEYOND]);
+    (gained > GAIN && share > LEAST).then_some(with)
+}
