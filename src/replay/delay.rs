@@ -125,6 +125,10 @@ fn along(motion: &Motion, value: f64) -> f64 {
     f64::from(motion.direction) * value
 }
 
+/// A joint that covers this share of the planned travel, and so many times what counts as a motion, did not rest.
+const WENT_ALONG: f64 = 0.4;
+const SURELY: f64 = 2.0;
+
 /// Delay of one transition.
 pub(super) fn delay(
     pair: &Pair,
@@ -146,6 +150,9 @@ pub(super) fn delay(
     }
     let (early_s, late_s) = (planned_s - asked.interval_s[0], asked.interval_s[1] - planned_s);
     let onset = unshaken(pair, signals, motion, onset, planned_s, rules).unwrap_or(onset);
+    if went_along(pair, signals, (planned, planned_s), onset.at_s) {
+        return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
+    }
     Delay {
         method: OnsetMethod::Fit,
         planned_s,
@@ -168,6 +175,22 @@ fn swings(signals: &Signals, (planned, planned_s): (&Motion, f64), answer: &Moti
     let before = before.filter(|motion| motion.start_s > from_s && motion.start_s < planned_s);
     let directions: Vec<i8> = before.map(|motion| motion.direction).collect();
     directions.windows(2).filter(|two| two[0] != two[1]).count() >= 2
+}
+
+/// Whether a joint went along with its plan before it is found to leave: of a motion that grows slower than noise lets see, the
+/// instant is not known.
+fn went_along(pair: &Pair, signals: &Signals, (planned, planned_s): (&Motion, f64), leaves_s: f64) -> bool {
+    let times = &pair.t_s[planned.segment.clone()];
+    let at = |t_s: f64| planned.segment.start + times.partition_point(|&t| t < t_s);
+    // Smoothing brings the motion itself forward.
+    let last = planned.segment.end - 1;
+    let (from, to) = (at(planned_s), at(leaves_s - signals.thresholds.window_s).min(last));
+    if from >= to {
+        return false;
+    }
+    let went = |position: &[f64]| along(planned, position[to] - position[from]);
+    let came = went(&signals.measured_rad);
+    came >= WENT_ALONG * went(&pair.planned) && came >= SURELY * signals.min_travel
 }
 
 /// A joint that is shaken by the others just before it is asked to move seems to answer early; its

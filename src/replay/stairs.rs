@@ -7,7 +7,7 @@ use super::{
     onset::{Onset, RISES, Rise, SMOOTH, quantiles},
     unrounded::{NONE, climbs_to},
 };
-use crate::series::Pair;
+use crate::{math::median, series::Pair};
 
 /// So many middles are fitted: farther up no rise has the shape of its start.
 const MOST: usize = 6;
@@ -15,6 +15,11 @@ const MOST: usize = 6;
 const RAMPS: [Rise; 3] = [Rise::Ramp(0.4), Rise::Ramp(0.8), Rise::Ramp(1.6)];
 /// What a rise of another shape lies off a middle by, in steps.
 const SHAPE: f64 = 0.03;
+/// Where no shape comes nearer than this to the middles, in mean squares of what one may lie off, none says when they began.
+const MOST_UNLIKE: f64 = 6.0;
+/// Changes of more steps than this at a time, so many of them, tell how long a plan holds each value.
+const SEVERAL: f64 = 1.5;
+const ENOUGH: usize = 4;
 /// A rest lies within half a step of its value; so much more is let pass, in steps.
 const OFF_REST: f64 = 0.55;
 
@@ -41,6 +46,9 @@ pub(super) fn onset(
     let least = likely.iter().map(|one| one.1).fold(f64::INFINITY, f64::min);
     let freedom = middles.len().saturating_sub(3).max(1) as f64;
     let unlike = (2.0 * least / freedom).max(1.0);
+    if unlike > MOST_UNLIKE {
+        return None;
+    }
     for one in &mut likely {
         one.1 /= unlike;
     }
@@ -67,6 +75,7 @@ fn first(pair: &Pair, motion: &Motion, step: f64) -> Option<usize> {
 fn middles(pair: &Pair, motion: &Motion, step: f64) -> Option<Vec<Middle>> {
     let (t_s, x, end) = (&pair.t_s, &pair.planned, motion.segment.end);
     let first = first(pair, motion, step)?;
+    let held_s = hold_s(pair, motion, step);
     let (mut middles, mut heights, mut stands) = (Vec::new(), Vec::new(), false);
     let mut at = first;
     while at < end && middles.len() < MOST {
@@ -78,10 +87,11 @@ fn middles(pair: &Pair, motion: &Motion, step: f64) -> Option<Vec<Middle>> {
         let from = at - 1;
         at = climbs_to(x, at, end, step);
         heights.push(f64::from(motion.direction) * (x[at] - x[from]));
+        let between_s = (t_s[at] - t_s[from]).max(held_s);
         middles.push(Middle {
-            t_s: 0.5 * (t_s[from] + t_s[at]),
+            t_s: t_s[at] - 0.5 * between_s,
             travel: f64::from(motion.direction) * (0.5 * (x[from] + x[at]) - x[first - 1]),
-            between_s: t_s[at] - t_s[from],
+            between_s,
             weight: 1.0,
         });
         at += 1;
@@ -90,6 +100,17 @@ fn middles(pair: &Pair, motion: &Motion, step: f64) -> Option<Vec<Middle>> {
     let rises = heights.windows(2).all(|two| two[1] - two[0] > NONE * step);
     weigh(&mut middles, step);
     (middles.len() > 1 && (stands || !even && !rises)).then_some(middles)
+}
+
+/// How long a plan holds each value in a motion, s; 0 where it changes by too few steps at a time to tell.
+fn hold_s(pair: &Pair, motion: &Motion, step: f64) -> f64 {
+    let (first, end) = (motion.samples.start.max(motion.segment.start + 1), motion.samples.end);
+    let changes = (first..end).filter(|&at| change(pair, motion, at).abs() > NONE * step);
+    let changes: Vec<(f64, f64)> =
+        changes.map(|at| (pair.t_s[at], change(pair, motion, at).abs() / step)).collect();
+    let several = changes.windows(2).filter(|two| two.iter().all(|change| change.1 > SEVERAL));
+    let held_s: Vec<f64> = several.map(|two| two[1].0 - two[0].0).collect();
+    if held_s.len() < ENOUGH { 0.0 } else { median(held_s) }
 }
 
 /// Where a plan passes the middle between two of its values.

@@ -1,6 +1,7 @@
 //! To which step a plan was rounded when it was written.
 
-use super::Track;
+use super::{JointKind, Track};
+use crate::{math::median, units::DEGREE_RAD};
 
 /// Smaller steps are rounding of numbers, rad or m.
 const DUST: f64 = 2.5e-7;
@@ -18,6 +19,10 @@ const JUMP: i64 = 3;
 /// Rows that stand for longer are a rest.
 const REST: usize = 5;
 
+/// Steps from here on, rad or m, that mostly stand for so long, s, are what is asked for: a joint follows each.
+const ASKED: [f64; 2] = [0.5 * DEGREE_RAD, 5e-3];
+const STANDS_S: f64 = 0.5;
+
 /// The step that a plan is rounded to, in its unit; `None` where its positions do not lie on one, change too seldom to
 /// tell, or do so as no rounding makes them: ramps and even accelerations lie on steps, too.
 pub(crate) fn rounding(plan: &Track) -> Option<f64> {
@@ -30,10 +35,24 @@ pub(crate) fn rounding(plan: &Track) -> Option<f64> {
     if moved.len() < LEAST || 20 * multiples < 19 * moved.len() {
         return None;
     }
+    if step >= ASKED[usize::from(plan.kind() == JointKind::Slides)] && stands_s(plan) >= STANDS_S {
+        return None;
+    }
     #[expect(clippy::cast_possible_truncation, reason = "a jump of more steps is one, too")]
     let steps: Vec<i64> = changes().map(|change| (change / step).round() as i64).collect();
     let shown = shown(&steps);
     (shown >= LEAST_SHOWN && shown as f64 >= SHOWN * moved.len() as f64).then_some(step)
+}
+
+/// Median time from a change to the next, s.
+fn stands_s(plan: &Track) -> f64 {
+    let (t_s, x) = (plan.t_s(), plan.position());
+    let changed = plan
+        .segments()
+        .iter()
+        .flat_map(|s| (s.start + 1..s.end).filter(|i| (x[*i] - x[*i - 1]).abs() > DUST));
+    let changed_s: Vec<f64> = changed.take(MOST).map(|i| t_s[i]).collect();
+    median(changed_s.windows(2).map(|two| two[1] - two[0]).collect())
 }
 
 /// How often changes in steps show that they were rounded: one step between rows that stand, or a speed that dips.
@@ -93,5 +112,12 @@ mod tests {
             rounding(&Track::new("a", t_s, q, &[]).unwrap())
         };
         assert_eq!((track(0.1, 0.1), track(0.05, 0.05), track(0.01, 0.05)), (None, None, None));
+        // Set values that go between two angles, and a slow plan in steps as coarse as a hundredth of that.
+        let t_s: Vec<f64> = (0..6000).map(|k| f64::from(k) * 0.01).collect();
+        let of = |at: &dyn Fn(f64) -> f64| {
+            rounding(&Track::new("a", t_s.clone(), t_s.iter().map(|t| at(*t)).collect(), &[]).unwrap())
+        };
+        assert_eq!(of(&|t| 0.2 * (0.5 * t).floor().rem_euclid(2.0)), None);
+        assert!(of(&|t| 0.002 * (0.5 * t).floor()).is_some());
     }
 }

@@ -20,12 +20,14 @@ const RESTS_RAD: f64 = 1e-3;
 /// Planned speed that is motion, rad/s.
 const MOVES_RAD_S: f64 = 1e-3;
 
-/// A joint that rests this far from its plan before its first motion, and as far after its last one, was measured from
-/// another zero, rad: no correction that ends where the plan ends mends that. Loads hold joints off by less.
-const SHIFTED_RAD: f64 = DEGREE_RAD;
+/// A joint that rests this far from its plan in the mean of its rests, the one before its first motion and that after its last among
+/// them, was measured from another zero, or its load holds it off, rad: no correction that ends where the plan ends mends that, and
+/// one in between drives a joint off that is where it should be.
+const SHIFTED_RAD: f64 = 0.3 * DEGREE_RAD;
 
-/// The two rests agree within this share.
-const SHIFTED_ALIKE: f64 = 0.2;
+/// The rests agree with their mean within this share of it, where they are two, three, and more: a dead band leaves a joint now on one
+/// side of its plan and now on the other.
+const SHIFTED_ALIKE: [f64; 3] = [0.2, 0.35, 0.6];
 
 /// What a joint does so long after its plan belongs to the run, s.
 pub const AFTER_S: f64 = 4.0;
@@ -80,23 +82,24 @@ impl Answer {
         Some(made)
     }
 
-    /// Finds what the joint was off by at rest, before and after all motion alike.
+    /// Finds what the joint was off by at rest, before and after all motion and in between alike.
     fn shift(&mut self, planned: &[(f64, f64)]) {
-        let mut motion = (0..planned.len()).filter(|&k| moves(planned, k));
-        let Some(first) = motion.next() else { return };
-        let last = motion.next_back().unwrap_or(first) + 1;
-        let off_rad = |range: Range<usize>| {
-            let seen = || range.clone().filter(|&k| self.seen[k]);
+        let off_rad = |rest: &Range<usize>| {
+            let last = rest.end.saturating_sub(steps_in(AT_REST_S)).max(rest.start)..rest.end;
+            let seen = || last.clone().filter(|&k| self.seen[k]);
             let sum: f64 = seen().map(|k| self.measured_rad[k] - planned[k].0).sum();
             let count = seen().count();
             (count >= steps_in(LEAST_AT_REST_S)).then(|| sum / count as f64)
         };
-        let rest = steps_in(AT_REST_S);
-        let (before, after) =
-            (first.saturating_sub(rest)..first, planned.len().saturating_sub(rest).max(last)..planned.len());
-        let Some((before, after)) = off_rad(before).zip(off_rad(after)) else { return };
-        let mean_rad = 0.5 * (before + after);
-        if mean_rad.abs() > SHIFTED_RAD && (before - after).abs() < SHIFTED_ALIKE * mean_rad.abs() {
+        let rests = rests(planned);
+        let ends = rests.first().zip(rests.last()).filter(|_| rests.len() > 1);
+        if !ends.is_some_and(|(first, last)| off_rad(first).is_some() && off_rad(last).is_some()) {
+            return;
+        }
+        let off_rad: Vec<f64> = rests.iter().filter_map(off_rad).collect();
+        let mean_rad = off_rad.iter().sum::<f64>() / off_rad.len() as f64;
+        let alike = SHIFTED_ALIKE[(off_rad.len() - 2).min(SHIFTED_ALIKE.len() - 1)] * mean_rad.abs();
+        if mean_rad.abs() > SHIFTED_RAD && off_rad.iter().all(|off| (off - mean_rad).abs() < alike) {
             self.shifted_rad = mean_rad;
         }
     }
@@ -155,6 +158,20 @@ impl Answer {
     pub(super) fn correction_rad(&self, planned: &[(f64, f64)]) -> Vec<f64> {
         planned.iter().zip(&self.sent).map(|(planned, sent)| sent.0 - planned.0).collect()
     }
+}
+
+/// Where a plan rests: at its beginning and at its end, however shortly, and in between for long enough to tell.
+fn rests(planned: &[(f64, f64)]) -> Vec<Range<usize>> {
+    let (mut rests, mut from) = (Vec::new(), 0);
+    let n = planned.len();
+    while from < n {
+        let end = (from..n).find(|&k| moves(planned, k)).unwrap_or(n);
+        if from == 0 || end == n || end - from >= steps_in(AT_REST_S) {
+            rests.push(from..end);
+        }
+        from = (end..n).find(|&k| !moves(planned, k)).unwrap_or(n);
+    }
+    rests
 }
 
 /// Whether a plan moves from a step to the next.
@@ -229,7 +246,8 @@ mod tests {
         };
         let (by, left) = shifted(0.035, 0.035, &|_| true);
         assert!((by - 0.035).abs() < 1e-9 && left.abs() < 1e-9);
-        for (before, after) in [(0.035, 0.0), (0.0, 0.035), (0.035, -0.035), (0.02, 0.035), (0.015, 0.015)] {
+        assert!((shifted(0.01, 0.011, &|_| true).0 - 0.0105).abs() < 1e-9);
+        for (before, after) in [(0.035, 0.0), (0.0, 0.035), (0.035, -0.035), (0.02, 0.035), (0.004, 0.004)] {
             assert!(shifted(before, after, &|_| true).0.abs() < 1e-12, "{before} {after}");
         }
         assert!(shifted(0.035, 0.035, &|k| k > 250).0.abs() < 1e-12, "not seen at rest");

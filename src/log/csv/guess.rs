@@ -1,6 +1,6 @@
 //! Guesses the unit of a time that says none.
 
-use super::unit::{DATENUM, EXCEL_DAY, FILETIME, Unit, parse_unit};
+use super::unit::{DATENUM, EXCEL_DAY, FILETIME, TICKS, Unit, parse_unit};
 use crate::math::median;
 
 /// The step between most neighbours that do not stand; 0 if all do.
@@ -34,8 +34,12 @@ fn is_round(step_s: f64) -> bool {
 pub(super) fn guess_unit(first: f64, step: f64, whole: bool, counts: bool) -> (Option<Unit>, Option<String>) {
     // From 1995 to 2130.
     const SINCE_1601: [f64; 2] = [1.243e17, 1.67e17];
+    const SINCE_1: [f64; 2] = [6.29e17, 6.73e17];
     if whole && (SINCE_1601[0]..SINCE_1601[1]).contains(&first) {
         return (Some(FILETIME), None);
+    }
+    if whole && (SINCE_1[0]..SINCE_1[1]).contains(&first) {
+        return (Some(TICKS), None);
     }
     if !whole && (SINCE_1899_DAYS[0]..SINCE_1899_DAYS[1]).contains(&first) && step < 1e-4 {
         return (Some(EXCEL_DAY), None);

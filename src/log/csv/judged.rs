@@ -17,7 +17,11 @@ const JUDGES: [&str; 8] =
     ["quality", "status", "statuscode", "status_code", "opc_quality", "opcquality", "validity", "qualität"];
 /// What they say of a good row, and of a bad one.
 const GOOD: [&str; 4] = ["good", "ok", "valid", "gut"];
-const BAD: [&str; 6] = ["bad", "invalid", "error", "fault", "schlecht", "badwaitingforinitialdata"];
+const BAD: [&str; 7] = ["bad", "invalid", "error", "err", "fault", "schlecht", "badwaitingforinitialdata"];
+/// Headers of columns that say of a row whether it is good, and what they say then and else.
+const WHETHER: [&str; 4] = ["valid", "is_valid", "isvalid", "good"];
+const YES: [&str; 2] = ["true", "1"];
+const NO: [&str; 2] = ["false", "0"];
 
 /// In the quality of OPC, 0 to 255, good begins with 192, and below 64 all is bad.
 const OPC_GOOD: &str = "192";
@@ -41,25 +45,31 @@ pub(super) fn without_bad<'a>(
 pub(super) struct Judge {
     column: usize,
     is_opc: bool,
+    /// What it says of a bad row.
+    bad: &'static [&'static str],
     header: String,
 }
 
 impl Judge {
     /// By the first rows of a table; `None` of one without such a column.
     pub(super) fn of(head: &Head) -> Option<Self> {
-        let judges = |name: &String| JUDGES.contains(&name.trim_matches(['_', ' ']).to_lowercase().as_str());
+        let plain = |name: &String| name.trim_matches(['_', ' ']).to_lowercase();
+        let whether = |name: &String| WHETHER.contains(&plain(name).as_str());
+        let judges = |name: &String| JUDGES.contains(&plain(name).as_str()) || whether(name);
         let column = head.names.iter().position(judges)?;
+        let [good, bad]: [&[&str]; 2] =
+            if whether(&head.names[column]) { [&YES, &NO] } else { [&GOOD, &BAD] };
         let sample = || head.sample.iter().filter_map(|row| row.get(column));
         let is_opc = head.names[column].to_lowercase().contains("quali")
             && sample().any(|cell| says(cell, &[OPC_GOOD]))
             && sample().all(|cell| opc(cell).is_some());
-        let tells = is_opc || sample().any(|cell| says(cell, &GOOD));
-        tells.then(|| Self { column, is_opc, header: head.names[column].clone() })
+        let tells = is_opc || sample().any(|cell| says(cell, good));
+        tells.then(|| Self { column, is_opc, bad, header: head.names[column].clone() })
     }
 
     pub(super) fn is_bad(&self, row: &ByteRecord) -> bool {
         row.get(self.column).is_some_and(|cell| {
-            if self.is_opc { opc(cell).is_some_and(|of| of < OPC_BELOW_IS_BAD) } else { says(cell, &BAD) }
+            if self.is_opc { opc(cell).is_some_and(|of| of < OPC_BELOW_IS_BAD) } else { says(cell, self.bad) }
         })
     }
 
@@ -70,7 +80,9 @@ impl Judge {
 }
 
 fn says(cell: &[u8], words: &[&str]) -> bool {
-    words.contains(&cell_text(cell).to_lowercase().as_str())
+    // `Bad [0]`, as some write with the number behind it.
+    let text = cell_text(cell).to_lowercase();
+    words.contains(&text.split([' ', '[', '(']).next().unwrap_or_default())
 }
 
 fn opc(cell: &[u8]) -> Option<u8> {

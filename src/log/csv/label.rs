@@ -248,6 +248,9 @@ fn parted(header: &str) -> (Cow<'_, str>, Option<Unit>) {
 
 /// The header before its unit, and the unit.
 fn without_unit(header: &str) -> (&str, Option<Unit>) {
+    if let Some(name) = header.strip_suffix('%').filter(|name| !name.is_empty()) {
+        return (name.trim_end_matches(['_', ' ']), unit_alone("%"));
+    }
     for (open, close) in [('[', ']'), ('(', ')'), ('（', '）')] {
         let Some(inner) = header.strip_suffix(close).and_then(|rest| rest.rsplit_once(open)) else {
             continue;

@@ -266,6 +266,7 @@ impl Form {
         let names = head.names.iter().enumerate();
         let mut labels: Vec<label::Label> =
             names.map(|(column, name)| label::label(name, below(column))).collect();
+        settle::leave_out_names(&mut labels, &head);
         settle::settle(&mut labels);
         settle::take_slides(&mut labels, &options.slides);
         settle::leave_out_orientation(&mut labels, &column::named(options, &head.names), remarks);

@@ -40,7 +40,10 @@ fn is_object_number(word: &str) -> bool {
         Some(_) => return false,
         None => (word, false),
     };
-    let plain = index.strip_prefix("0x").or_else(|| index.strip_suffix(['h', 'H']));
+    let plain = index
+        .strip_prefix("0x")
+        .or_else(|| index.strip_prefix("0X"))
+        .or_else(|| index.strip_suffix(['h', 'H']));
     let Some(digits) = plain.or_else(|| has_subindex.then_some(index)) else { return false };
     OBJECTS.iter().any(|object| object.eq_ignore_ascii_case(digits))
 }

@@ -4,8 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{
     Quantity, Role,
+    head::Head,
+    keys::NAMES,
     label::Label,
     letter::Lettered,
+    number::{Looks, looks},
     unit::{METRE, Measure},
 };
 use crate::remark::{Code, Remarks};
@@ -52,6 +55,16 @@ pub(super) fn take_slides<T>(labels: &mut [Label], slides: &BTreeMap<String, T>)
     for label in labels.iter_mut().filter(|label| called(label) && label.role.is_some() && long(label)) {
         let position = label.quantity.is_none_or(|quantity| quantity == Quantity::Position);
         label.is_joint |= position && !label.is_time;
+    }
+}
+
+/// A column that says of what a row is, as `joint` in a table of one joint, holds no positions where it holds words.
+pub(super) fn leave_out_names(labels: &mut [Label], head: &Head) {
+    for (column, label) in labels.iter_mut().enumerate() {
+        let plain = head.names[column].trim_matches(['_', ' ']).to_lowercase();
+        let cells = || head.sample.iter().filter_map(|row| row.get(column));
+        let words = cells().next().is_some() && cells().all(|cell| looks(cell) == Looks::Text);
+        label.is_joint &= !(words && NAMES.contains(&plain.as_str()));
     }
 }
 

@@ -43,6 +43,7 @@ pub(super) const METRE: Unit = unit("m", Measure::Length, 1.0);
 
 /// Of clocks of Windows.
 pub(super) const FILETIME: Unit = unit("100 ns since 1601", Measure::Time, 100.0);
+pub(super) const TICKS: Unit = unit("100 ns since year 1", Measure::Time, 100.0);
 /// Of spreadsheets.
 pub(super) const EXCEL_DAY: Unit = unit("days since 1899-12-30", Measure::Time, 86_400e9);
 /// Of MATLAB: day 719529 is 1970-01-01.
@@ -80,7 +81,7 @@ const OTHERS: [&str; 30] = [
 ];
 
 /// Spellings, in lower case and with `deg` for the degree sign.
-const UNITS: [(&[&str], Unit); 39] = [
+const UNITS: [(&[&str], Unit); 40] = [
     (&["rad", "radian", "radians", "弧度"], RADIAN),
     (&["deg", "degree", "degrees", "grad", "grd", "grados", "gradi", "degrés", "度"], DEGREE),
     (&["mrad"], unit("mrad", Measure::Angle, 1e-3)),
@@ -115,6 +116,7 @@ const UNITS: [(&[&str], Unit); 39] = [
     (&["min", "minute", "minutes"], unit("min", Measure::Time, 60e9)),
     (&["h", "hr", "hrs", "hour", "hours"], unit("h", Measure::Time, 3600e9)),
     (&["filetime", "100 ns since 1601"], FILETIME),
+    (&[".net ticks", "100 ns since year 1"], TICKS),
     (&["excel", "days since 1899-12-30"], EXCEL_DAY),
     (&["datenum", "days since year 0"], DATENUM),
     (&["pa"], unit("Pa", Measure::Pressure, 1.0)),
@@ -130,6 +132,7 @@ impl Unit {
     pub(super) fn zero_ns(self) -> i128 {
         match self {
             FILETIME => -11_644_473_600_000_000_000,
+            TICKS => -62_135_596_800_000_000_000,
             EXCEL_DAY | ARCHIVE_DAY => -2_209_161_600_000_000_000,
             DATENUM => -62_167_305_600_000_000_000,
             _ => 0,

@@ -17,14 +17,14 @@ pub(super) enum Meaning {
 }
 
 const PLANNED: &str = "expected ideal leader target targets tgt ziel vorgabe demanded requested planned plan desired des reference references ref rpos setp setpoint setpoints ipo set sp rsol soll sollwert goal nominal nom demand \
-    wanted consigne trajectory traj fuehrung aspos consigna referencia riferimento alvo ohje ohjearvo börvärde zadana zadane \
+    wanted consigne req requests dmd tavoite mål målvärde børverdi trajectory traj fuehrung aspos consigna referencia riferimento alvo ohje ohjearvo börvärde zadana zadane \
     规划 规划值 计划 期望 期望值 目标 目标值 设定 设定值 给定 给定值 参考 参考值 目標 目標値 設定値 목표 목표값 \
     задание задано заданное заданный уставка план";
-const MEASURED: &str = "observed follower actual act rückmeldung rueckmeldung fdbk estimated measured meas feedback fb fbk fpos process present observation ist istwert real sensor encoder enc pv measurement measurements reached rist \
-    mess messwert ms aipos mesure mesuré mesurée mesuree réel réelle reel reelle medido medida misurato misurata attuale mitattu oloarvo ärvärde \
-    zmierzona 实际 实际值 实测 实测值 测量 测量值 反馈 反馈值 当前 当前值 実際 実際値 実測 実測値 現在 現在値 실제 실제값 측정 측정값 \
+const MEASURED: &str = "pfb fdb estimate observed follower actual act rückmeldung rueckmeldung fdbk estimated measured meas feedback fb fbk fpos process present observation ist istwert real sensor encoder enc pv measurement measurements reached rist \
+    mess messwert ms aipos mesure mesuré mesurée mesuree réel réelle reel reelle medido medida misurato misurata attuale mitattu oloarvo är ärvärde måleverdi \
+    zmierzona 实际 实际值 实测 实测值 测量 测量值 反馈 反馈值 当前 当前值 実際 実際値 実測 実測値 現在 現在値 현재 현재값 실제 실제값 측정 측정값 \
     факт фактический фактическое текущее измерено измеренное измеренный";
-const COMMAND: &str = "command commands commanded cmd action actions stell stellwert stellgrösse stellgröße kommando kommandiert befehl gesendet sent commande envoyé envoyée envoye envoyee comando comandado 指令 指令值 指令値 命令 명령";
+const COMMAND: &str = "pcmd command commands commanded cmd action actions stell stellwert stellgrösse stellgröße kommando kommandiert befehl gesendet sent commande envoyé envoyée envoye envoyee comando comandado 指令 指令值 指令値 命令 명령";
 const POSITION: &str = "q pos position positions posn ang angle angles winkel lage theta phi posición posicion posizione ángulo \
     angulo angolo kulma vinkel 角度 转角 位置 각도 위치 угол положение";
 const VELOCITY: &str = "qd dq vel velocity velocities velo speed omega geschwindigkeit drehzahl qdot dot vitesse velocidad \
@@ -110,7 +110,10 @@ fn push<'a>(text: &'a str, apart: bool, words: &mut Vec<Word<'a>>) {
     let meaning = meaning_of_word(&lower);
     // Byte offsets into the lower-case text hold for the text itself where no letter changes its length.
     let cuts = match meaning {
-        Meaning::Name if text.is_ascii() => compound(&lower),
+        // Only letters of Europe: no word of others is in two scripts.
+        Meaning::Name if lower.len() == text.len() && lower.chars().all(|c| c < '\u{250}') => {
+            compound(&lower)
+        }
         Meaning::Name if lower == text => unspaced(text),
         _ => None,
     };
@@ -158,14 +161,16 @@ fn compound(word: &str) -> Option<Vec<usize>> {
         return None;
     }
     let known = |part: &str| (part.len() > 1 || part == "q") && meaning_of_word(part) != Meaning::Name;
-    for first in 1..word.len() {
+    let cut = |at: &usize| word.is_char_boundary(*at);
+    for first in (1..word.len()).filter(cut) {
         if !known(&word[..first]) {
             continue;
         }
         if known(&word[first..]) {
             return Some(vec![first, word.len()]);
         }
-        let second = (first + 1..word.len()).find(|&at| known(&word[first..at]) && known(&word[at..]));
+        let second =
+            (first + 1..word.len()).filter(cut).find(|&at| known(&word[first..at]) && known(&word[at..]));
         if let Some(second) = second {
             return Some(vec![first, second, word.len()]);
         }
@@ -191,6 +196,8 @@ mod tests {
         assert_eq!(split("关节1规划角度"), ["关节", "1", "规划", "角度"]);
         assert_eq!(split("大臂角度设定值"), ["大臂", "角度", "设定值"]);
         assert_eq!(split("目標角度"), ["目標", "角度"]);
+        assert_eq!(split("현재각도"), ["현재", "각도"]);
+        assert_eq!(split("målvinkel"), ["mål", "vinkel"]);
     }
 
     #[test]

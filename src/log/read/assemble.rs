@@ -113,7 +113,7 @@ pub(super) fn assemble(
     }
     unset::of_sides(sides, &mut remarks);
     repeated::of_sides(sides, plan_is_command, &mut remarks);
-    held::of_sides(choice, sides, &mut remarks);
+    held::of_sides(choice, choice.of_one_recorder(&assembly.extracted), sides, &mut remarks);
     if let Some(command) = &mut command {
         repeated::of_command(&mut command.series, &mut remarks);
         held::of_command(command, sides[1].1, &mut remarks);

@@ -3,6 +3,7 @@
 
 use super::{quality::is_of_gaps, recording::Command, select_topics::Choice};
 use crate::{
+    math::median,
     remark::{Code, Remarks},
     series::{Series, Track},
 };
@@ -16,12 +17,28 @@ const REPEATS: usize = 20;
 /// A value after a silence is no farther from the one before than so many of the steps elsewhere: more was lost.
 const STEPS: f64 = 3.0;
 
+/// A plan whose values are this far apart in the median, s, and so many times as far as those of the measurement beside it, is one of
+/// set values: no planner goes on smoothly between them.
+const APART_S: f64 = 0.3;
+const SPARSER: f64 = 5.0;
+/// Unless this share of its changes is followed by one the same way, by no more than so many times as much.
+const GO_ON: f64 = 0.5;
+const ALIKE: f64 = 4.0;
+
 /// Holds the plan through its silences, up to the end of the measurement, if it is written so; and the measurement, if
-/// that is, too.
-pub(super) fn of_sides(choice: &Choice, sides: &mut [(&str, &mut Series); 2], remarks: &mut Remarks) {
+/// that is, too. `one_file`: one recorder wrote both, so that a plan of few values is what was set, and no key points.
+pub(super) fn of_sides(
+    choice: &Choice,
+    one_file: bool,
+    sides: &mut [(&str, &mut Series); 2],
+    remarks: &mut Remarks,
+) {
     let [(_, planned), (_, measured)] = sides;
     // Trajectories say themselves how they go on.
     if choice.planned.iter().all(|candidate| candidate.field.is_some()) {
+        if one_file {
+            of_set_values(planned, measured, remarks);
+        }
         let topics = [&choice.planned, &choice.measured];
         let topics =
             topics.map(|side| side.iter().map(|candidate| candidate.topic.as_str()).collect::<Vec<_>>());
@@ -71,6 +88,59 @@ fn of_side(
     );
     remarks.add(Code::Guessed, silences, message);
     silences > 0
+}
+
+/// Holds each value of a plan of set values until the next one comes.
+fn of_set_values(planned: &mut Series, measured: &Series, remarks: &mut Remarks) {
+    let (mut values, mut names) = (0, Vec::new());
+    for track in &mut planned.tracks {
+        let Some(beside) = measured.tracks.iter().find(|beside| beside.name() == track.name()) else {
+            continue;
+        };
+        let between_s = beside.sample_interval_s();
+        let gaps_s: Vec<f64> = track.t_s().windows(2).map(|two| two[1] - two[0]).collect();
+        if gaps_s.is_empty() || median(gaps_s) < APART_S.max(SPARSER * between_s) || samples_a_motion(track) {
+            continue;
+        }
+        let until_s = beside.t_s().last().copied().unwrap_or_default();
+        if let Some(held) = in_steps(track, between_s, until_s) {
+            values += track.len() as u64;
+            names.push(track.name().to_owned());
+            *track = held;
+        }
+    }
+    let message = format!(
+        "values of the plan of {} that come {} s or more apart beside a denser measurement: each is taken for a set value and held \
+         until the next; if the machine went on smoothly between them, put the plan into a log of its own and join it \
+         (hydrotrace join)",
+        names.join(", "),
+        APART_S
+    );
+    remarks.add(Code::Guessed, values, message);
+}
+
+/// Whether changes mostly go on as they were: samples of a motion, however few, are no set values.
+fn samples_a_motion(track: &Track) -> bool {
+    let changes: Vec<f64> = track.position().windows(2).map(|two| two[1] - two[0]).collect();
+    let moves = changes.iter().filter(|change| change.abs() > 0.0).count();
+    let goes_on =
+        |two: &&[f64]| two[0] * two[1] > 0.0 && (ALIKE.recip()..=ALIKE).contains(&(two[1] / two[0]));
+    (changes.windows(2).filter(goes_on).count() as f64) >= GO_ON * moves as f64
+}
+
+/// A track that holds each of its values until the next one, the last to an instant, with a sample in every so many seconds: a step is
+/// known as well as the measurement is.
+fn in_steps(track: &Track, every_s: f64, until_s: f64) -> Option<Track> {
+    let ends_s = track.t_s().iter().skip(1).copied().chain([until_s + 0.5 * every_s]);
+    let (mut t_s, mut position) = (Vec::new(), Vec::new());
+    for ((from_s, value), to_s) in track.t_s().iter().zip(track.position()).zip(ends_s) {
+        let each_s = every_s.max((to_s - from_s) / MOST);
+        let within =
+            (0..).map(|k| from_s + each_s * f64::from(k)).take_while(|at_s| *at_s < to_s - 0.5 * each_s);
+        t_s.extend(std::iter::once(*from_s).chain(within.skip(1)));
+        position.resize(t_s.len(), *value);
+    }
+    Track::of(track.kind(), track.name(), t_s, position, &[]).ok()
 }
 
 /// Whether hardly a row repeats the one before, that of all joints at these instants, and none after a silence is far
@@ -176,6 +246,26 @@ mod tests {
         of_both([&mut plan, &mut measured], &[vec!["/plan"], vec!["/joints"]], &mut Remarks::default());
         assert!(measured.tracks[0].t_s().windows(2).all(|two| two[1] - two[0] < 0.035));
         assert!(plan.tracks[0].len() < 400);
+    }
+
+    #[test]
+    fn set_values_that_come_seldom_are_held_and_samples_of_a_motion_are_not() {
+        let measured = series(|_, _| true);
+        let told = |mut plan: Series| {
+            let mut remarks = Remarks::default();
+            of_set_values(&mut plan, &measured, &mut remarks);
+            (plan, remarks.as_slice().len())
+        };
+        let (t_s, q) = (vec![0.0, 2.0, 3.7, 5.7, 9.1, 14.0], vec![0.2, 0.7, 0.7, 0.4, 0.4, 0.1]);
+        let cuts = crate::series::split_at_gaps(&t_s);
+        let set = Track::new("J", t_s, q, &cuts).unwrap();
+        let (held, remarks) = told(Series { tracks: vec![set] });
+        let at = |t_s: f64| held.tracks[0].at(t_s).unwrap().position;
+        assert_eq!(([1.97, 2.01, 9.0, 13.97, 19.9].map(at), remarks), ([0.2, 0.7, 0.4, 0.4, 0.1], 1));
+        for every in [5, 30] {
+            let motion = series(|k, _| k % every == 0);
+            assert_eq!(told(motion.clone()), (motion, 0), "{every}");
+        }
     }
 
     #[test]

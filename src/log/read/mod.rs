@@ -1,5 +1,6 @@
 //! Reading: from the files of a run to plan, measurement and other signals.
 
+mod alike;
 mod assemble;
 mod beside;
 mod by_words;
@@ -25,6 +26,7 @@ mod quality;
 pub(super) mod recording;
 mod repeated;
 mod samples;
+mod scaled;
 mod select_topics;
 mod sender;
 mod spoilt;

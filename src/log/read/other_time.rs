@@ -39,6 +39,15 @@ const USUAL_S: [f64; 2] = [-0.1, 1.0];
 const FILTERS: [u32; 3] = [1, 2, 3];
 const MOST_TENTHS: u32 = 12;
 
+/// A change of what joints are late by from the first third of a run to the last that is none of the machine, s: so many joints change
+/// so, each by this share as much as the one in the middle, and about half of it until the middle third.
+const DRIFTS_S: f64 = 0.12;
+const DRIFTING: usize = 2;
+const DRIFTS_ALIKE: f64 = 0.4;
+const EVENLY: std::ops::RangeInclusive<f64> = 0.25..=0.75;
+/// A part tells where the plan moves in it by this share of its motion.
+const PART_TELLS: f64 = 0.3;
+
 /// Durations by planned durations that machines keep.
 const USUAL_PACE: [f64; 2] = [0.97, 1.03];
 
@@ -86,10 +95,16 @@ pub(super) fn message(planned: &Series, measured: &Series, one_clock: bool) -> O
             1e3 * late_s
         ));
     }
-    let pace = Pace::of(&joints)?;
+    another_pace(&joints, as_it_is, left_by_lag)
+        .or_else(|| if one_clock { None } else { clocks_apart(&joints) })
+}
+
+/// Says that the run took another time than its plan, if that explains what is left.
+fn another_pace(joints: &[Both], as_it_is: f64, left_by_lag: f64) -> Option<String> {
+    let pace = Pace::of(joints)?;
     let usual = (USUAL_PACE[0]..=USUAL_PACE[1]).contains(&pace.ratio);
     let planned_s = |t_s: f64| pace.planned_s + (t_s - pace.measured_s) / pace.ratio;
-    let left = apart(&planned_s);
+    let left = apart(joints, |joint, t_s| joints[joint].planned.held_at(planned_s(t_s)).position);
     // The lag of a machine smears a short motion, which then seems to take longer.
     (!usual && left < LEFT[1] * as_it_is && left < LESS_THAN_LAG * left_by_lag).then(|| {
         format!(
@@ -98,6 +113,41 @@ pub(super) fn message(planned: &Series, measured: &Series, one_clock: bool) -> O
             pace.ratio
         )
     })
+}
+
+/// Says that joints come later and later, or earlier and earlier.
+fn clocks_apart(joints: &[Both]) -> Option<String> {
+    let [first_s, last_s, over_s] = drift(joints)?;
+    Some(format!(
+        "the joints are {first_s:.2} s behind their plan at first and {last_s:.2} s at the end, and it changes steadily: the clocks of \
+         plan and measurement seem to run {:.1} % apart, or the machine goes on changing; delays, lags and what a fit says of them are \
+         wrong by that. --time publish or log takes one clock for both where the log has one; --measured-delay-ms=0 says that both are \
+         of one clock",
+        100.0 * (last_s - first_s).abs() / over_s
+    ))
+}
+
+/// By how much most joints are behind their plan in the first part of the run and in the last one, s, and from the middle of the one to
+/// that of the other, s, where it changes steadily and alike.
+fn drift(joints: &[Both]) -> Option<[f64; 3]> {
+    let late = |joint: &Both| match joint.parts() {
+        [Some(first), Some(middle), Some(last)] => Some([first, middle, last].map(|part| shift_s(&[part]))),
+        _ => None,
+    };
+    let each: Vec<[f64; 3]> = joints.iter().filter_map(late).collect();
+    if each.len() < DRIFTING {
+        return None;
+    }
+    let of = |at: fn(&[f64; 3]) -> f64| quantile(each.iter().map(at).collect(), 0.5);
+    let change_s = of(|late| late[2] - late[0]);
+    let steadily = |late: &&[f64; 3]| {
+        let share = (late[1] - late[0]) / (late[2] - late[0]);
+        EVENLY.contains(&share) && ((late[2] - late[0]) / change_s - 1.0).abs() < DRIFTS_ALIKE
+    };
+    let alike = each.iter().filter(steadily).count();
+    let over_s = joints.iter().filter_map(Both::lasts_s).fold(0.0, f64::max) * 2.0 / 3.0;
+    let counts = change_s.abs() > DRIFTS_S && alike >= DRIFTING && 4 * alike >= 3 * each.len();
+    counts.then(|| [of(|late| late[0]), of(|late| late[2]), over_s])
 }
 
 /// Whether most joints leave rest nearer to their plan as it is than to one of so much before, s: they lead later on, as those do whose
@@ -156,6 +206,23 @@ impl<'a> Both<'a> {
             deviation(&came.iter().map(|[t_s, _]| planned.held_at(*t_s).position).collect::<Vec<f64>>());
         let moved = deviation(&came.iter().map(|[_, q]| *q).collect::<Vec<f64>>());
         (motion > TELLS && moved > MOVED * motion).then_some(Self { planned, measured, came, motion })
+    }
+
+    fn lasts_s(&self) -> Option<f64> {
+        Some(self.came.last()?[0] - self.came.first()?[0])
+    }
+
+    /// The three parts of a run; none of one in which the joint hardly moves.
+    fn parts(&self) -> [Option<Both<'a>>; 3] {
+        let each = self.came.len() / 3;
+        [0, 1, 2].map(|part| {
+            let came = self.came[part * each..(part + 1) * each].to_vec();
+            let planned: Vec<f64> = came.iter().map(|[t_s, _]| self.planned.held_at(*t_s).position).collect();
+            let (motion, moved) =
+                (deviation(&planned), deviation(&came.iter().map(|[_, q]| *q).collect::<Vec<f64>>()));
+            let tells = motion > PART_TELLS * self.motion && moved > MOVED * motion;
+            tells.then_some(Both { planned: self.planned, measured: self.measured, came, motion })
+        })
     }
 
     /// Root mean square error by planned motion, where the plan is so.

@@ -264,12 +264,46 @@ fn drop_spikes(kept: &mut Vec<usize>, t_s: &[f64], at: impl Fn(usize) -> f64) ->
         spikes.sort_unstable();
         spikes.dedup();
     }
+    if let Some(code) = code_of(&spikes, value) {
+        spikes.extend(runs_of(code, n, value));
+        spikes.sort_unstable();
+        spikes.dedup();
+    }
     let mut k = 0;
     kept.retain(|_| {
         k += 1;
         spikes.binary_search(&(k - 1)).is_err()
     });
     spikes.len() as u64
+}
+
+/// So many equal values that no joint can have are the code of a reading that failed, which may come several times in a row.
+const CODE: usize = 3;
+const LONGEST_RUN: usize = 50;
+
+/// The value that most of these samples share, if they are a code.
+fn code_of(spikes: &[usize], value: impl Fn(usize) -> f64) -> Option<f64> {
+    let mut values: Vec<f64> = spikes.iter().map(|k| value(*k)).collect();
+    values.sort_unstable_by(f64::total_cmp);
+    let code = *values.get(values.len() / 2)?;
+    let equal = values.iter().filter(|one| one.total_cmp(&code).is_eq()).count();
+    (equal >= CODE && 2 * equal > spikes.len()).then_some(code)
+}
+
+/// Samples of a code in runs that begin and end with a jump, or where the log does.
+fn runs_of(code: f64, n: usize, value: impl Fn(usize) -> f64) -> Vec<usize> {
+    let is = |k: usize| value(k).total_cmp(&code).is_eq();
+    let far = |k: usize| (value(k) - code).abs() > FAR;
+    let (mut found, mut from) = (Vec::new(), 0);
+    while from < n {
+        let end = (from..n).find(|k| !is(*k)).unwrap_or(n);
+        let apart = (from == 0 || far(from - 1)) && (end == n || far(end));
+        if apart && (1..=LONGEST_RUN).contains(&(end - from)) {
+            found.extend(from..end);
+        }
+        from = end + 1;
+    }
+    found
 }
 
 /// Clock jumps and gaps together, ascending, inside the samples.
@@ -300,6 +334,9 @@ mod tests {
         let moving = |k: usize| 0.2 + 0.0018 * k as f64 + 1e-4 * (k * 7919 % 13) as f64;
         let spike = |k: usize| if k % 60 == 30 { 0.09 } else { 0.0 };
         assert_eq!((dropped(moving), dropped(|k| moving(k) + spike(k))), (0, 3));
+        let failed = [0, 30, 31, 32, 60, 90, 150, 199];
+        let code = |k: usize| if failed.contains(&k) { -174.5 } else { moving(k) };
+        assert_eq!(dropped(code), 8, "a code, at the ends and several times in a row, too");
         let noise = |k: usize| 0.1 * ((k * 7919 + k * k * 31) % 101) as f64 / 101.0;
         assert_eq!(dropped(noise), 0);
         let flickers = |k: usize| 0.1 * (k / 90) as f64 + if k == 30 { 0.1 } else { 0.0 };

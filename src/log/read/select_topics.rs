@@ -36,6 +36,18 @@ impl Choice {
         tables.any(|content| matches!(content, Content::Table(table) if table.form == Form::Poses))
     }
 
+    /// Whether plan and measurement come from the same files, in which nobody put the plan beside the measurement later.
+    pub(super) fn of_one_recorder(&self, extracted: &Extracted) -> bool {
+        let files = |side: &[Candidate]| -> BTreeSet<usize> {
+            side.iter()
+                .flat_map(|one| extracted.sources[one.source].parts.iter().map(|part| part.0))
+                .collect()
+        };
+        let planned = files(&self.planned);
+        let same = extracted.files.len() == 1 || !planned.is_empty() && planned == files(&self.measured);
+        same && extracted.sent().is_none()
+    }
+
     /// Topics of commands that serve as the plan because the log has no other.
     pub(super) fn commanded(&self) -> impl Iterator<Item = &str> {
         let sent = |c: &&Candidate| c.rank == COMMAND;

@@ -1,6 +1,11 @@
 //! Finds joints that were recorded in another frame than their plan: sign, zero, unit or name.
 
-use super::{quality::looks_like_degrees, recording::Command};
+use super::{
+    alike::{Alike, LEAST_INSTANTS, both, speeds},
+    quality::looks_like_degrees,
+    recording::Command,
+    scaled::scaled,
+};
 use crate::{
     log::source::AXES,
     math::range,
@@ -8,11 +13,6 @@ use crate::{
     series::{Series, Track},
     text::shell_word,
 };
-
-/// Instants at which plan and measurement are compared, evenly spread over the measurement; fewer than the least tell
-/// nothing.
-const INSTANTS: usize = 500;
-const LEAST_INSTANTS: usize = 50;
 
 /// A joint follows its plan if the root mean square of its error is below this share of that of the planned motion.
 const FOLLOWS: f64 = 0.3;
@@ -44,8 +44,8 @@ const LESS: f64 = 0.6;
 /// Plans that move by this share of what is small tell which they are.
 const TELLS: f64 = 0.2;
 
-/// Positions of plan and measurement at the same instants.
-type Both = Vec<[f64; 2]>;
+/// A plan that correlates so with the speed of its measurement is one.
+const AS_SPEED: f64 = 0.97;
 
 /// Remarks joints whose measurement looks like their plan in another frame.
 pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remarks) {
@@ -71,7 +71,7 @@ pub(super) fn of_sides(planned: &Series, measured: &Series, remarks: &mut Remark
             continue;
         };
         let others = || planned.tracks.iter().filter(|other| other.name() != track.name());
-        if let Some(message) = of_joint(track, came, others()) {
+        if let Some(message) = of_joint(track, came, others()).or_else(|| scaled(track, came)) {
             remarks.add(Code::UnlikePlan, 1, message);
         }
     }
@@ -207,7 +207,16 @@ fn of_joint<'a>(
         ));
     }
     if correlation < ALIKE {
-        return None;
+        let as_speed = speeds(measured).and_then(|speeds| Alike::of(&both(planned, &speeds)));
+        let is_speed = as_speed.is_some_and(|found| {
+            found.correlation > AS_SPEED && (SAME_UNIT[0]..=SAME_UNIT[1]).contains(&found.slope)
+        });
+        return is_speed.then(|| {
+            format!(
+                "the plan of {name} runs like the speed of its measurement (and not like its position): is it a measured speed, or \
+                 a set value of the speed? --planned names the plan of the position"
+            )
+        });
     }
     if !(SAME_UNIT[0]..=SAME_UNIT[1]).contains(&slope) {
         if planned.turns() && [slope, 1.0 / slope].iter().any(|ratio| looks_like_degrees(*ratio)) {
@@ -227,61 +236,6 @@ fn of_joint<'a>(
             size(mean_error.abs())
         )
     })
-}
-
-/// How a measurement is like a plan.
-struct Alike {
-    /// Root mean square of measured less planned.
-    rms_error: f64,
-    /// Its mean.
-    mean_error: f64,
-    /// The same where the plan has no speed, by a line through errors over speeds.
-    offset: f64,
-    /// Root mean square distance of the plan from its mean.
-    motion: f64,
-    /// Of plan and measurement; 0 where one of them stands still.
-    correlation: f64,
-    /// Measured motion by planned motion.
-    slope: f64,
-}
-
-impl Alike {
-    /// `None` with too few instants.
-    fn of(both: &Both) -> Option<Self> {
-        if both.len() < LEAST_INSTANTS {
-            return None;
-        }
-        let mean = |of: &dyn Fn(&[f64; 2]) -> f64| both.iter().map(of).sum::<f64>() / both.len() as f64;
-        let (plan, came) = (mean(&|p| p[0]), mean(&|p| p[1]));
-        let squares = mean(&|p| (p[0] - plan).powi(2));
-        let products = mean(&|p| (p[0] - plan) * (p[1] - came));
-        let spread = mean(&|p| (p[1] - came).powi(2)).sqrt();
-        let motion = squares.sqrt();
-        let step = |k: usize| both[(k + 1).min(both.len() - 1)][0] - both[k.saturating_sub(1)][0];
-        let steps = || (0..both.len()).map(step);
-        let usual = steps().sum::<f64>() / both.len() as f64;
-        let (mut with_error, mut with_step) = (0.0, 0.0);
-        for (step, [plan_at, came_at]) in steps().zip(both) {
-            with_error += (step - usual) * (came_at - plan_at);
-            with_step += (step - usual).powi(2);
-        }
-        let lag = if with_step > 0.0 { with_error / with_step } else { 0.0 };
-        let or_none = |value: f64| if value.is_finite() { value } else { 0.0 };
-        Some(Self {
-            rms_error: mean(&|p| (p[1] - p[0]).powi(2)).sqrt(),
-            mean_error: came - plan,
-            offset: came - plan - lag * usual,
-            motion,
-            correlation: or_none(products / (motion * spread)),
-            slope: or_none(products / squares),
-        })
-    }
-}
-
-fn both(planned: &Track, measured: &Track) -> Both {
-    let step = measured.len().div_ceil(INSTANTS).max(1);
-    let came = measured.t_s().iter().zip(measured.position()).step_by(step);
-    came.filter_map(|(t_s, came)| Some([planned.at(*t_s)?.position, *came])).collect()
 }
 
 #[cfg(test)]
@@ -353,6 +307,14 @@ mod tests {
         let sags = |t: f64| 0.8 - 0.005 * t;
         assert!(said(&goal, &plan).is_some_and(|said| said.contains("stands while boom moves by")));
         assert_eq!([said(&goal, &rests), said(&plan, &rests), said(&goal, &sags)], [None, None, None]);
+    }
+
+    #[test]
+    fn a_plan_that_is_the_speed_of_its_measurement_is_told() {
+        let [speed, position] = [|t: f64| 0.64 * (0.8 * t).cos(), |t: f64| 0.8 * (0.8 * t).sin()];
+        let [planned, came] = [track("boom", &speed), track("boom", &position)];
+        let said = of_joint(&planned, &came, std::iter::empty());
+        assert!(said.as_ref().is_some_and(|said| said.contains("runs like the speed")), "{said:?}");
     }
 
     #[test]

@@ -125,7 +125,7 @@ fn newest(why: &str) -> String {
 fn together(limit: &SharedLimit, asked: f64, at_s: f64) -> String {
     format!(
         "{} The plan asks for {asked:.2} times what they share, most at {at_s:.1} s: no command mends that, more time or fewer joints at \
-         once do.",
+         once do. The error that is expected next does not count it, and more comes.",
         shared(limit)
     )
 }

@@ -88,7 +88,6 @@ fn expected(replanned: &Replanned) -> Table {
         error("mean transition peak", before.measured_mean_peak_rad, |p| p.mean_peak_rad),
         error("  mean below in 9 of 10 runs", None, |p| p.mean_peak_margin_rad),
         error("worst transition peak", before.measured_worst_peak_rad, |p| p.worst_peak_rad),
-        error("sum of peaks", None, |p| p.sum_of_peaks_rad),
         vec![
             "starts + reversals".into(),
             before.measured_transitions.to_string(),

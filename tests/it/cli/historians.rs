@@ -53,6 +53,7 @@ fn times_in_any_unit_and_in_parts_are_one_run() {
         ("ticks.csv", of("time [10 ms]", &|k| (2 * k).to_string())),
         ("hundredths.csv", of("Time [1/100 s]", &|k| (2 * k).to_string())),
         ("filetime.csv", of("Time", &|k| (133_932_816_000_000_000_u64 + u64::from(k) * 200_000).to_string())),
+        ("dotnet.csv", of("Time", &|k| (638_844_336_000_000_000_u64 + u64::from(k) * 200_000).to_string())),
         ("excel.csv", of("Time", &|k| format!("{:.10}", 45_811.375 + s(k) / 86_400.0))),
         ("matlab.csv", of("Time", &|k| format!("03-Jun-2025 09:00:{:02}.{:03}", whole(k).0, whole(k).1))),
         ("index.csv", of("", &|k| format!("{:.2}", s(k)))),

@@ -41,6 +41,7 @@ mod recorders;
 mod remote;
 mod replan;
 mod report;
+mod set_values;
 mod simulate;
 mod sliding;
 #[cfg(unix)]

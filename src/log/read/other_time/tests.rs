@@ -125,3 +125,24 @@ fn a_slow_filter_of_set_values_is_no_clock_and_hides_none() {
         assert!(late.is_some(), "{filters} filters, {lag_s} s together, on another clock");
     }
 }
+
+#[test]
+fn clocks_that_run_apart_are_told_and_joints_that_lag_each_by_itself_are_not() {
+    let t_s: Vec<f64> = (0..6000).map(|k| f64::from(k) * 0.01).collect();
+    let plan = |joint: f64, t: f64| 0.4 * ((0.5 + 0.1 * joint) * t).sin() * (0.13 * t).cos();
+    let series = |at_s: &dyn Fn(f64, f64) -> f64| {
+        let track = |joint: u8| {
+            let q = t_s.iter().map(|&t| plan(joint.into(), at_s(joint.into(), t))).collect();
+            Track::new(&format!("J{joint}"), t_s.clone(), q, &[]).unwrap()
+        };
+        Series { tracks: (0..4).map(track).collect() }
+    };
+    let said = |at_s: &dyn Fn(f64, f64) -> f64| message(&series(&|_, t| t), &series(at_s), false);
+    let apart = said(&|_, t| (t - 0.1) / 1.006).unwrap();
+    assert!(apart.contains("run 0.6 % apart"), "{apart}");
+    for late in
+        [|_: f64, t: f64| t - 0.25, |joint: f64, t: f64| t - 0.1 - 0.1 * joint, |_: f64, t: f64| t / 1.001]
+    {
+        assert_eq!(said(&late), None);
+    }
+}

@@ -1,0 +1,99 @@
+//! Finds joints whose measurement is off by a share of their angle wherever they rest: a gear, an encoder's lines, a lever.
+
+use crate::{
+    math::{Line, line, range},
+    series::Track,
+    units::DEGREE_RAD,
+};
+
+/// A plan that stays within this for so long rests, rad or m and s; the last part of a rest counts, s.
+const STANDS: f64 = 1e-4;
+const RESTS_S: f64 = 0.8;
+const LAST_S: f64 = 0.3;
+/// So many rests tell, over such a range, rad or m.
+const LEAST: usize = 5;
+const WIDE: [f64; 2] = [10.0 * DEGREE_RAD, 0.1];
+/// A share of the angle that is told, what it makes over the range, rad or m, and how much of the errors at rest it explains.
+const SHARE: f64 = 0.008;
+const COUNTS: [f64; 2] = [0.3 * DEGREE_RAD, 3e-3];
+const EXPLAINS: f64 = 0.97;
+
+/// What is to be said of a joint whose errors at rest grow with its angle.
+pub(super) fn scaled(planned: &Track, measured: &Track) -> Option<String> {
+    let rests: Vec<[f64; 2]> = rests(planned)
+        .into_iter()
+        .filter_map(|[from_s, to_s, at]| {
+            let within = measured.t_s().partition_point(|t_s| *t_s < from_s)
+                ..measured.t_s().partition_point(|t_s| *t_s <= to_s);
+            let came = measured.position().get(within)?;
+            (!came.is_empty()).then(|| [at, came.iter().sum::<f64>() / came.len() as f64 - at])
+        })
+        .collect();
+    let [at, off] = [0, 1].map(|of| rests.iter().map(|rest| rest[of]).collect::<Vec<f64>>());
+    let [lowest, highest] = range(at.iter().copied());
+    let kind = usize::from(!planned.turns());
+    if rests.len() < LEAST || highest - lowest < WIDE[kind] {
+        return None;
+    }
+    let Line { slope: share, square, left } = line(&at, &off);
+    let left: f64 = left.iter().map(|left| left * left).sum();
+    let spread = share * share * square + left;
+    let counts = share.abs() >= SHARE && share.abs() * (highest - lowest) >= COUNTS[kind];
+    (counts && left <= (1.0 - EXPLAINS) * spread).then(|| {
+        format!(
+            "{} was measured {:.3} times as far as its plan from rest to rest ({} rests): is a gear, a lever or an encoder's scale off by \
+             {:.1} %? A fit takes that for a dead band, and a correction drives the joint off by it",
+            planned.name(),
+            1.0 + share,
+            rests.len(),
+            100.0 * share.abs()
+        )
+    })
+}
+
+/// Where a plan rests at another place than before: from when to when its last part lasts, s, and where.
+fn rests(planned: &Track) -> Vec<[f64; 3]> {
+    let (t_s, q) = (planned.t_s(), planned.position());
+    let mut found: Vec<[f64; 3]> = Vec::new();
+    let mut from = 0;
+    for k in 1..=q.len() {
+        if q.get(k).is_some_and(|next| (next - q[from]).abs() <= STANDS) {
+            continue;
+        }
+        let last_s = t_s[k - 1];
+        let elsewhere = found.last().is_none_or(|before| (before[2] - q[from]).abs() > STANDS);
+        if last_s - t_s[from] >= RESTS_S && elsewhere {
+            found.push([last_s - LAST_S, last_s, q[from]]);
+        }
+        from = k;
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scale_is_told_and_a_dead_band_an_offset_and_few_rests_are_not() {
+        let stops = [0.0, 0.5, 0.2, 0.9, 0.4, -0.3, 0.1];
+        let plan = |t_s: f64| {
+            let (at, part) = (t_s / 4.0, (t_s % 4.0 / 2.0 - 1.0).max(0.0));
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few stops")]
+            let k = (at as usize).min(stops.len() - 1);
+            stops[k] + (stops[(k + 1).min(stops.len() - 1)] - stops[k]) * part
+        };
+        let t_s: Vec<f64> = (0..2800).map(|k| f64::from(k) * 0.01).collect();
+        let track = |until: usize, of: &dyn Fn(f64) -> f64| {
+            let q = t_s[..until].iter().map(|t| of(*t)).collect();
+            Track::new("boom", t_s[..until].to_vec(), q, &[]).unwrap()
+        };
+        let said = |until: usize, of: &dyn Fn(f64) -> f64| scaled(&track(until, &plan), &track(until, of));
+        let far = said(2800, &|t| 1.02 * plan(t - 0.1) + 0.01).unwrap();
+        assert!(far.contains("1.020 times as far") && far.contains("(7 rests)"), "{far}");
+        let band = |t: f64| plan(t) + 0.006 * f64::from(if (t / 4.0) % 2.0 < 1.0 { 1 } else { -1 });
+        let of: [&dyn Fn(f64) -> f64; 3] = [&|t| plan(t) + 0.02, &band, &|t| 1.002 * plan(t)];
+        assert!(of.iter().all(|of| said(2800, of).is_none()));
+        assert!(said(1400, &|t| 1.02 * plan(t)).is_none(), "few rests");
+    }
+}
