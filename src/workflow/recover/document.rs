@@ -43,22 +43,3 @@ impl RecoverDocument {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{
-        remark::{Code, Remarks},
-        schema::is_written_and_read,
-    };
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let mut remarks = Remarks::default();
-        remarks.add(Code::DamagedChunk, 1, "a chunk was dropped");
-        let recovered =
-            Recovered { messages: 5, doubtful: 2, blocks: 2, dropped_blocks: 1, attachments: 3, remarks };
-        let document = RecoverDocument::of(&recovered);
-        is_written_and_read(&document, "recover.v1.schema.json", "hydrotrace recover, version 1");
-    }
-}
