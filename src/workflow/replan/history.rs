@@ -335,9 +335,7 @@ pub(super) mod tests {
 
     /// A joint that goes on at a speed for a second.
     pub(in crate::workflow::replan) fn sent(by: f64) -> Series {
-        let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
-        let q = t_s.iter().map(|t| by * t).collect();
-        Series { tracks: vec![Track::new("J", t_s, q, &[]).unwrap()] }
+        Series::sampled("J", 100, |t| by * t)
     }
 
     pub(in crate::workflow::replan) fn history(peaks: &[f64]) -> History {
