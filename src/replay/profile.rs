@@ -40,8 +40,7 @@ fn peaks(pair: &Pair, span_s: &RangeInclusive<f64>) -> [Option<f64>; STRETCHES] 
     for (t_s, (planned, measured)) in pair.t_s.iter().zip(angles) {
         let share = if whole_s > 0.0 { (t_s - span_s.start()) / whole_s } else { 0.0 };
         // The last sample belongs to the last stretch.
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to the range")]
-        let place = ((share * STRETCHES as f64) as usize).min(STRETCHES - 1);
+        let place = crate::math::whole(share * STRETCHES as f64).min(STRETCHES - 1);
         let error = (planned - measured).abs();
         if let Some(peak) = peaks.get_mut(place) {
             *peak = Some(peak.map_or(error, |most: f64| most.max(error)));
