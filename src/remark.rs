@@ -237,9 +237,4 @@ mod tests {
         remarks.add(Code::Gap, 2, "a gap");
         assert_eq!(remarks.as_slice(), [Remark { code: Code::Gap, message: "a gap".into(), count: 3 }]);
     }
-
-    #[test]
-    fn codes_have_kebab_names() {
-        assert_eq!(Code::NotClosed.name(), "not-closed");
-    }
 }

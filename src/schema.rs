@@ -1,9 +1,6 @@
 //! The committed JSON Schemas are those of the types that they describe.
 
-use std::fmt::Debug;
-
 use schemars::{JsonSchema, generate::SchemaSettings};
-use serde::{Serialize, de::DeserializeOwned};
 
 /// Holds a file in `schemas/` to a type; with `UPDATE_SCHEMA` in the environment it is written anew.
 pub(crate) fn is_committed<T: JsonSchema>(file: &str, title: &str) {
@@ -19,14 +16,4 @@ pub(crate) fn is_committed<T: JsonSchema>(file: &str, title: &str) {
         committed == text,
         "run `UPDATE_SCHEMA=1 cargo test the_committed_schema` and look at the change of {file}"
     );
-}
-
-/// Holds a document to its committed schema, and to the text that is written of it.
-pub(crate) fn is_written_and_read<T>(document: &T, file: &str, title: &str)
-where
-    T: JsonSchema + Serialize + DeserializeOwned + PartialEq + Debug,
-{
-    is_committed::<T>(file, title);
-    let read: T = serde_json::from_str(&serde_json::to_string(document).unwrap()).unwrap();
-    assert_eq!(read, *document);
 }

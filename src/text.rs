@@ -46,8 +46,7 @@ const MORE_DECIMALS: usize = 6;
 
 /// A number with so many decimals, or with two digits where it is so small that these would hide it.
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few decimals")]
-    let least = (1.0 - value.abs().log10().floor()).clamp(0.0, 99.0) as usize;
+    let least = crate::math::whole((1.0 - value.abs().log10().floor()).clamp(0.0, 99.0));
     let more = least > decimals && least <= decimals + MORE_DECIMALS;
     format!("{value:.*}", if more { least } else { decimals })
 }

@@ -132,15 +132,6 @@ impl Cylinder {
         (length_m, sense * a * b * sin_angle / length_m + self.straight)
     }
 
-    /// The smallest and the largest torque at a lever, N m: by sense, what pulling and what pushing
-    /// at supply pressure gives.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
-    pub fn torque_range_nm(&self, lever_m: f64) -> (f64, f64) {
-        let (push, pull) = (self.push_n * lever_m, -self.pull_n * lever_m);
-        (push.min(pull), push.max(pull))
-    }
-
     /// Everything at once, from the sine and cosine of the joint's angle, its speed, rad/s, and its
     /// torque, N m.
     ///

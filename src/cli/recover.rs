@@ -6,10 +6,7 @@ use super::{
     CliError, Outcome, Run,
     console::{Console, spare_for_log},
 };
-use crate::{
-    render::recover as words,
-    workflow::recover::{Inputs, RecoverDocument, run},
-};
+use crate::{log::recover, render::recover as words, workflow::recover::RecoverDocument};
 
 /// Save every intact message of a damaged log
 #[derive(Debug, clap::Args)]
@@ -29,12 +26,12 @@ pub(super) struct Args {
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         spare_for_log(Some(&self.output), from_ref(&self.log))?;
-        let recovered = run(&Inputs { log: self.log.clone(), output: self.output.clone() })?;
+        let document = RecoverDocument::of(recover(&self.log, &self.output)?);
         console.answer(
             self.json,
-            &RecoverDocument::of(&recovered),
-            || words::document(&self.output.to_string_lossy(), &recovered),
-            &recovered.remarks,
+            &document,
+            || words::document(&self.output.to_string_lossy(), &document.recovered),
+            &document.recovered.remarks,
             &[],
         )
     }

@@ -55,8 +55,8 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let run = self.simulated()?;
         console.show(&words::document(&run, &self.plant, self.seed, &self.output))?;
-        console.say_remarks(&run.remarks);
-        Ok(if run.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
+        console.say_remarks(&run.prepared.remarks);
+        Ok(if run.prepared.remarks.is_empty() { Outcome::Clean } else { Outcome::Remarks })
     }
 }
 

@@ -21,7 +21,7 @@ pub(super) fn beyond(problem: &Problem, found: &Estimate, workspace: &mut Worksp
         return None;
     }
     let mut opened = problem.clone();
-    opened.shown.beyond = true;
+    opened.shown.valve.beyond = true;
     let before = problem.cost_at(&found.x, found.scale_rad, workspace);
     let with = opened.descend(found.x.clone(), ROUNDS, workspace);
     let gained = before - opened.cost_at(&with.x, found.scale_rad, workspace);

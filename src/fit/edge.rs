@@ -19,7 +19,7 @@ const ROUNDS: usize = 20;
 /// The estimate with an edge, if the data show one.
 pub(super) fn edge(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Option<Estimate> {
     let mut edged = problem.clone();
-    edged.shown.edge = true;
+    edged.shown.valve.edge = true;
     let before = problem.cost_at(&found.x, found.scale_rad, workspace);
     let with = edged.descend(found.x.clone(), ROUNDS, workspace);
     let gained = before - edged.cost_at(&with.x, found.scale_rad, workspace);

@@ -9,7 +9,7 @@ use super::{
     integral,
     interval::{Knowledge, discrepancy},
     outcome::JointFit,
-    parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown},
+    parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown, Valve},
     run::{Run, Sample},
     set_values::SetValues,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
@@ -67,9 +67,8 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         priors: &priors,
         shown: Shown {
             limits: asked_for(runs, limits),
-            edge: false,
+            valve: Valve::default(),
             late: false,
-            beyond: false,
             integral: true,
         },
         part: Part::All,
@@ -94,7 +93,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         found = problem.descend(found.x, 30, &mut workspace);
     }
     if let Some(beyond) = beyond(&problem, &found, &mut workspace) {
-        problem.shown.beyond = true;
+        problem.shown.valve.beyond = true;
         found = beyond;
     }
     if let Some(without) = integral::without(&problem, &found, &mut workspace) {
@@ -102,7 +101,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         found = without;
     }
     if let Some(edged) = edge(&problem, &found, &mut workspace) {
-        problem.shown.edge = true;
+        problem.shown.valve.edge = true;
         found = edged;
     }
     let mut rival = None;

@@ -77,17 +77,24 @@ const PRIORS: [Prior; SHARED] = [
     positive(1.0, 1.0),
 ];
 
+/// What a valve may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Valve {
+    /// Its edges open gradually.
+    pub(super) edge: bool,
+    /// It opens beyond what the largest speeds take.
+    pub(super) beyond: bool,
+}
+
 /// Parts that a model has only where the data show them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Shown {
     /// Speed limits for growing and shrinking angles, then acceleration limits.
     pub(super) limits: [bool; 4],
-    /// Edges of the valve that open gradually.
-    pub(super) edge: bool,
+    /// What the valve is beside a dead band.
+    pub(super) valve: Valve,
     /// Set values that come late, by a filter and a delay.
     pub(super) late: bool,
-    /// A valve that opens beyond what the largest speeds take.
-    pub(super) beyond: bool,
     /// Integral action of the position loop.
     pub(super) integral: bool,
 }
@@ -96,9 +103,9 @@ impl Shown {
     /// Whether a parameter moves.
     pub(super) fn has(self, parameter: usize) -> bool {
         match parameter {
-            EDGE => self.edge,
+            EDGE => self.valve.edge,
             FILTER | SET_VALUE_DELAY => self.late,
-            BEYOND => self.beyond,
+            BEYOND => self.valve.beyond,
             INTEGRAL_GAIN => self.integral,
             LIMITS.. => self.limits.get(parameter - LIMITS).is_none_or(|shown| *shown),
             _ => true,
@@ -153,10 +160,10 @@ impl Priors {
             speed_limit_rad_s: [limit(0), limit(1)],
             acceleration_limit_rad_s2: [limit(2), limit(3)],
             hysteresis_rad_s: value(HYSTERESIS),
-            edge_rad_s: if shown.edge { value(EDGE) } else { 0.0 },
+            edge_rad_s: if shown.valve.edge { value(EDGE) } else { 0.0 },
             set_value_filter_s: if shown.late { value(FILTER) } else { 0.0 },
             set_value_delay_s: if shown.late { value(SET_VALUE_DELAY) } else { 0.0 },
-            opens_beyond: if shown.beyond { value(BEYOND) } else { 0.0 },
+            opens_beyond: if shown.valve.beyond { value(BEYOND) } else { 0.0 },
             backlash_rad: BACKLASH_RAD,
         }
     }

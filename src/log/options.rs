@@ -102,6 +102,10 @@ pub enum SignalRole {
 }
 
 impl SignalRole {
+    /// What was sent to the machine, and what its valves did.
+    pub(crate) const OF_DRIVES: [Self; 5] =
+        [Self::Command, Self::Valve, Self::CapPressure, Self::RodPressure, Self::SupplyPressure];
+
     /// The quantity of its values.
     pub const fn quantity(self, kind: JointKind) -> Quantity {
         match (self, kind) {

@@ -1,6 +1,6 @@
 //! A stretch of a run, by the time that its reports show.
 
-use crate::units::NS_PER_S;
+use crate::units::{NS_PER_S, nanoseconds};
 
 /// A stretch of a run, counted from the run's first sample; both ends belong to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,11 +18,12 @@ impl Default for TimeRange {
 
 impl TimeRange {
     /// From one second to another; where one is `None`, without that end.
-    #[expect(clippy::cast_possible_truncation, reason = "saturates, far beyond any run")]
     pub fn of_seconds(from_s: Option<f64>, to_s: Option<f64>) -> Self {
         let whole = Self::default();
-        let ns = |end_s: f64| (end_s * NS_PER_S).round() as i64;
-        Self { from_ns: from_s.map_or(whole.from_ns, ns), to_ns: to_s.map_or(whole.to_ns, ns) }
+        Self {
+            from_ns: from_s.map_or(whole.from_ns, nanoseconds),
+            to_ns: to_s.map_or(whole.to_ns, nanoseconds),
+        }
     }
 
     /// Whether it has an end.

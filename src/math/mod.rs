@@ -11,6 +11,7 @@ mod statistic;
 mod step;
 mod trend;
 mod two_samples;
+mod whole;
 
 pub use hermite::{State, cubic, linear, quintic};
 pub use line::{Line, line};
@@ -28,3 +29,4 @@ pub use trend::{
     weighted_median,
 };
 pub use two_samples::{Difference, difference};
+pub use whole::whole;

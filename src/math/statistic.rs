@@ -46,8 +46,7 @@ pub fn quantile(mut values: Vec<f64>, p: f64) -> f64 {
 /// The order statistic below the `p` quantile of `n` values, and the part of the way to the next.
 fn place(n: usize, p: f64) -> Option<(usize, f64)> {
     let place = p.clamp(0.0, 1.0) * n.checked_sub(1)? as f64;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 <= place < n")]
-    let below = place.floor() as usize;
+    let below = super::whole(place);
     Some((below, place - below as f64))
 }
 

@@ -54,7 +54,6 @@ pub use payload::PayloadChange;
 pub use record::{JointRecord, Record};
 pub use simulate::simulate;
 pub use truth::{JointTruth, Truth};
-pub use variation::Variation;
 
 use crate::{
     arm::{Arm, Chain, Cylinder, Drive, Joint},

@@ -9,6 +9,7 @@ use super::{
     machine::Machine, payload::Payload, set_value,
 };
 use crate::{
+    math::whole,
     rng::{Stream, stream},
     series::{Series, Track},
 };
@@ -157,9 +158,4 @@ fn loops(plant: &Plant, command: &Series, seed: u64) -> Result<(Vec<Loop>, usize
 /// Whole steps in a time that is not negative.
 fn steps(time_s: f64) -> usize {
     whole((time_s / STEP_S).round())
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an hour has few steps")]
-fn whole(count: f64) -> usize {
-    count.max(0.0) as usize
 }

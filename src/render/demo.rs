@@ -5,6 +5,7 @@ use std::path::Path;
 use super::compare::at_the_tool;
 use super::kit::{Document, Id, NONE, Section, Sentence, Table, counted, deg, optional, probability};
 use crate::{
+    math::whole,
     replay::PEAK_ERROR,
     task::Objective,
     workflow::{
@@ -161,11 +162,7 @@ fn bars(comparison: &Comparison) -> Vec<Vec<String>> {
         })
     };
     let most = joints().map(|(_, before, after)| before.max(after)).fold(f64::MIN_POSITIVE, f64::max);
-    let bar = |value: f64| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most the width")]
-        let columns = (value / most * WIDTH).round() as usize;
-        "#".repeat(columns.max(1))
-    };
+    let bar = |value: f64| "#".repeat(whole((value / most * WIDTH).round()).max(1));
     joints()
         .flat_map(|(joint, before, after)| {
             [

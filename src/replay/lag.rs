@@ -6,6 +6,7 @@ use multiversion::multiversion;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{Rules, motion::Motion};
+use crate::math::whole;
 
 /// The lag of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -34,8 +35,7 @@ struct Correlation {
 /// Correlates the speeds around every planned motion, on a common grid; no motion, no lag.
 pub(super) fn lag(speeds: &Speeds, planned: &[Motion], sample_interval_s: f64, rules: &Rules) -> Lag {
     let step_s = (1.0 / rules.lag_rate_hz).max(sample_interval_s);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-    let shifts = (rules.lag_max_s / step_s).clamp(0.0, 1e4) as usize;
+    let shifts = whole((rules.lag_max_s / step_s).clamp(0.0, 1e4));
     let mut total = Correlation::zero(shifts);
     let mut single_s = Vec::new();
     for motion in planned {
@@ -70,8 +70,7 @@ impl Correlation {
         let reach_s = shifts as f64 * step_s;
         let start_s = opens_s.max(motion.start_s - 2.0 * reach_s);
         let end_s = closes_s.min(motion.end_s + 2.0 * reach_s);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the segment")]
-        let place = |at_s: f64| ((at_s - start_s) / step_s).max(0.0) as usize;
+        let place = |at_s: f64| whole((at_s - start_s) / step_s);
         let n = place(end_s) + 1;
         let grid = |values: &[f64]| resample(t, &values[motion.segment.clone()], start_s, step_s, n);
         let (p, m) = (grid(speeds.planned_rad_s), grid(speeds.measured_rad_s));

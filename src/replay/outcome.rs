@@ -53,6 +53,12 @@ impl Replay {
         self.transitions.iter().map(|transition| transition.peak_error)
     }
 
+    /// Their mean; `None` without any.
+    pub(crate) fn mean_peak_rad(&self) -> Option<f64> {
+        let count = self.transitions.len();
+        (count > 0).then(|| self.peaks_rad().sum::<f64>() / count as f64)
+    }
+
     /// The joints, the one with the largest error first, compared as transitions are.
     pub fn joints_worst_first(&self) -> Vec<&JointReplay> {
         let bands =

@@ -197,24 +197,12 @@ fn nearest(path: &Path, i: usize, first: usize, end: usize) -> (usize, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::JointKind;
+    use crate::series::{Track, align};
 
     fn pair(n: u32, late_s: f64, off_rad: f64) -> Pair {
-        let t_s: Vec<f64> = (0..n).map(|k| 0.02 * f64::from(k)).collect();
         let angle = |t: f64| 0.5 * (t - 3.0).clamp(0.0, 4.0);
-        Pair {
-            name: "a".into(),
-            kind: JointKind::Turns,
-            planned: t_s.iter().map(|&t| angle(t)).collect(),
-            planned_velocity: None,
-            measured: t_s.iter().map(|&t| angle(t - late_s) + off_rad).collect(),
-            segments: std::iter::once(0..t_s.len()).collect(),
-            planned_interval_s: 0.01,
-            planned_step: None,
-            matched: t_s.len(),
-            unmatched: 0,
-            t_s: t_s.into(),
-        }
+        let measured = Track::sampled("a", 2 * n, |t| angle(t - late_s) + off_rad);
+        align(&Track::sampled("a", 2 * n, angle), &measured).unwrap()
     }
 
     #[test]

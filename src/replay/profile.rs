@@ -40,8 +40,7 @@ fn peaks(pair: &Pair, span_s: &RangeInclusive<f64>) -> [Option<f64>; STRETCHES] 
     for (t_s, (planned, measured)) in pair.t_s.iter().zip(angles) {
         let share = if whole_s > 0.0 { (t_s - span_s.start()) / whole_s } else { 0.0 };
         // The last sample belongs to the last stretch.
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to the range")]
-        let place = ((share * STRETCHES as f64) as usize).min(STRETCHES - 1);
+        let place = crate::math::whole(share * STRETCHES as f64).min(STRETCHES - 1);
         let error = (planned - measured).abs();
         if let Some(peak) = peaks.get_mut(place) {
             *peak = Some(peak.map_or(error, |most: f64| most.max(error)));
@@ -53,23 +52,11 @@ fn peaks(pair: &Pair, span_s: &RangeInclusive<f64>) -> [Option<f64>; STRETCHES] 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::JointKind;
+    use crate::series::{Track, align};
 
-    fn pair(t_s: Vec<f64>, error: &[f64]) -> Pair {
-        let n = t_s.len();
-        Pair {
-            name: "a".into(),
-            kind: JointKind::Turns,
-            measured: error.iter().map(|e| -e).collect(),
-            planned: vec![0.0; n],
-            planned_velocity: None,
-            segments: std::iter::once(0..n).collect(),
-            planned_interval_s: 0.01,
-            planned_step: None,
-            matched: n,
-            unmatched: 0,
-            t_s: t_s.into(),
-        }
+    fn pair(t_s: &[f64], error: &[f64]) -> Pair {
+        let track = |q: Vec<f64>| Track::new("a", t_s, q, &[]).unwrap();
+        align(&track(vec![0.0; error.len()]), &track(error.iter().map(|e| -e).collect())).unwrap()
     }
 
     #[test]
@@ -77,8 +64,8 @@ mod tests {
         let t_s: Vec<f64> = (0..=1800).map(|k| f64::from(k) * 0.01).collect();
         let mut error = vec![0.001; t_s.len()];
         error[1234] = -0.5;
-        let late = pair(vec![9.0, 17.5], &[0.1, 0.2]);
-        let profiles = Profiles::of(&[pair(t_s, &error), late]);
+        let late = pair(&[9.0, 17.5], &[0.1, 0.2]);
+        let profiles = Profiles::of(&[pair(&t_s, &error), late]);
         assert!((profiles.most - 0.5).abs() < 1e-12);
         for (place, peak) in profiles.peaks[0].iter().enumerate() {
             assert_eq!(*peak, Some(if place == 12 { 0.5 } else { 0.001 }));
@@ -90,6 +77,6 @@ mod tests {
     #[test]
     fn a_single_instant_and_no_joint_at_all_are_runs_too() {
         assert_eq!(Profiles::of(&[]), Profiles { peaks: Vec::new(), most: 0.0 });
-        assert_eq!(Profiles::of(&[pair(vec![3.0], &[0.1])]).peaks[0][0], Some(0.1));
+        assert_eq!(Profiles::of(&[pair(&[3.0], &[0.1])]).peaks[0][0], Some(0.1));
     }
 }

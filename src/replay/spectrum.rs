@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::Rules;
 use crate::{
-    math::median,
+    math::{median, whole},
     series::{JointKind, Pair},
 };
 
@@ -179,15 +179,6 @@ fn starts_s(pair: &Pair, window_s: f64) -> Vec<f64> {
     }
     let every = starts_s.len().div_ceil(MOST_WINDOWS).max(1);
     starts_s.into_iter().step_by(every).collect()
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "counts of windows and samples; a cast saturates"
-)]
-fn whole(count: f64) -> usize {
-    count as usize
 }
 
 /// Planned and measured positions at instants that ascend within a stretch.

@@ -112,10 +112,7 @@ mod tests {
 
     #[test]
     fn a_rest_and_the_dead_time_after_it_are_no_frozen_sensor() {
-        let t_s: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.01).collect();
-        let track = |at: &dyn Fn(f64) -> f64| {
-            Track::new("a", t_s.clone(), t_s.iter().map(|t| at(*t)).collect(), &[]).unwrap()
-        };
+        let track = |at: &dyn Fn(f64) -> f64| Track::sampled("a", 1000, at);
         let moves = |t: f64| 0.5 * (t - 5.0).max(0.0);
         let stands_for = |s: f64| frozen(&track(&moves), &track(&|t| moves(t - s)));
         assert_eq!(stands_for(0.4), None);
@@ -124,10 +121,7 @@ mod tests {
 
     #[test]
     fn what_a_sensor_that_stood_showed_was_not_measured_and_a_joint_that_stood_was() {
-        let t_s: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.01).collect();
-        let track = |at: &dyn Fn(f64) -> f64| {
-            Track::new("a", t_s.clone(), t_s.iter().map(|t| at(*t)).collect(), &[]).unwrap()
-        };
+        let track = |at: &dyn Fn(f64) -> f64| Track::sampled("a", 1000, at);
         let plan = |t: f64| 0.2 * (t - 2.0).clamp(0.0, 6.0);
         let noise = |t: f64| 1e-4 * (1e4 * t).sin();
         let frozen_at = |joint: &dyn Fn(f64) -> f64| {

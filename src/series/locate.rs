@@ -1,6 +1,7 @@
 //! Finds a stretch of motion within a longer one.
 
 use super::{Series, Track, track::span_s};
+use crate::math::whole;
 
 /// Where a motion was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -126,12 +127,7 @@ fn first_look(
     if to_s - from_s > LONGEST_S || latest_s - earliest_s > LONGEST_S {
         return None;
     }
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "bounded above, not negative"
-    )]
-    let count = |span_s: f64| (span_s.max(0.0) / STEP_S) as usize + 1;
+    let count = |span_s: f64| whole(span_s / STEP_S) + 1;
     let (instants, shifts) = (count(to_s - from_s), count(latest_s - earliest_s));
     let on_grid = |track: &Track, start_s: f64, count: usize| -> Vec<f64> {
         let mut cursor = 0;

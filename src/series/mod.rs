@@ -13,6 +13,8 @@ mod locate;
 mod noise;
 mod pose;
 mod rounding;
+#[cfg(test)]
+mod sampled;
 mod signal;
 mod track;
 mod trajectory;

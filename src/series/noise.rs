@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::{SIGMA_PER_MAD, dot, mad, median};
+use crate::math::{SIGMA_PER_MAD, dot, mad, median, whole};
 
 /// Noise and step size of one position signal, in its unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -53,8 +53,7 @@ pub(crate) fn over_window(
 ) -> Option<(f64, f64)> {
     /// Of a robust standard deviation of one normal number, as a share of it.
     const ERROR: f64 = 1.17;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-    let cubic = cubic((window_s / usual_s).clamp(0.0, 1e4).round() as usize + 1)?;
+    let cubic = cubic(whole((window_s / usual_s).clamp(0.0, 1e4).round()) + 1)?;
     let even = |at: usize| {
         let span_s = t_s[at + cubic.len() - 1] - t_s[at];
         (span_s / usual_s / (cubic.len() - 1) as f64 - 1.0).abs() <= 0.1

@@ -81,9 +81,7 @@ mod tests {
     use super::*;
 
     fn plan(written: impl Fn(f64) -> f64) -> Track {
-        let t_s: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.01).collect();
-        let position = t_s.iter().map(|t| written(0.3 * (0.7 * t).sin())).collect();
-        Track::new("a", t_s, position, &[]).unwrap()
+        Track::sampled("a", 1000, |t| written(0.3 * (0.7 * t).sin()))
     }
 
     #[test]

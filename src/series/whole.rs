@@ -336,15 +336,13 @@ mod tests {
     #[test]
     fn a_plan_that_is_held_in_motion_is_halted_and_straight_lines_are_not() {
         let of = |gentle: bool, stopped_s: f64, resumes_s: f64, step: f64| {
-            let t_s: Vec<f64> = (0..1200).map(|k| f64::from(k) * 0.01).collect();
-            let position = t_s.iter().map(|t| {
-                let t = if *t < stopped_s { *t } else { stopped_s.max(t - (resumes_s - stopped_s)) };
+            let position = |t: f64| {
+                let t = if t < stopped_s { t } else { stopped_s.max(t - (resumes_s - stopped_s)) };
                 let x = ((t - 1.0) / 4.0).clamp(0.0, 1.0);
                 let at = if gentle { x * x * x * (10.0 - 15.0 * x + 6.0 * x * x) } else { x };
                 if step > 0.0 { (at / step).round() * step } else { at }
-            });
-            let position: Vec<f64> = position.collect();
-            Broken::of(&Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] })
+            };
+            Broken::of(&Series::sampled("J", 1200, position))
         };
         for resumes_s in [7.0, 99.0] {
             let found = of(true, 3.0, resumes_s, 0.0);

@@ -4,7 +4,7 @@ use crate::{
     log::Recording,
     remark::{Code, Remarks},
     replay::{JointReplay, Replay, Rules, replay},
-    series::{Pair, align},
+    series::Pair,
     workflow::carried::Carried,
 };
 
@@ -13,9 +13,7 @@ pub(super) fn doubt_leads(recording: &Recording, remarks: &mut Remarks) {
     if Carried::of(recording).promise().is_some() || recording.command.is_some() {
         return;
     }
-    let tracks = recording.measured.tracks.iter();
-    let pair = |measured: &crate::series::Track| align(recording.planned.track(measured.name())?, measured);
-    let pairs: Vec<Pair> = tracks.filter_map(pair).collect();
+    let pairs = recording.pairs();
     remark_leads(&pairs, &replay(&pairs, &Rules::default()), remarks);
 }
 

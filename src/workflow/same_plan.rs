@@ -212,16 +212,13 @@ mod tests {
     fn a_plan_that_stops_at_once_in_that_of_another_is_broken_off_and_a_shorter_move_is_none() {
         // Ramps of 0.4 s to 8 deg/s, from 2 s on.
         let plan = |cruise_s: f64, cut_s: f64| {
-            let t_s: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.01).collect();
             let speed =
                 |t_s: f64| (t_s / 0.4).min((cruise_s + 0.8 - t_s) / 0.4).clamp(0.0, 1.0) * 8.0 * DEGREE_RAD;
             let mut at_rad = 0.0;
-            let position = t_s.iter().map(|t| {
-                at_rad += 0.01 * if *t < cut_s { speed(t - 2.0) } else { 0.0 };
+            Series::sampled("J", 2000, |t| {
+                at_rad += 0.01 * if t < cut_s { speed(t - 2.0) } else { 0.0 };
                 at_rad
-            });
-            let position = position.collect();
-            Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] }
+            })
         };
         let whole = plan(5.0, 20.0);
         let broken = |short: &Series| {
@@ -236,11 +233,7 @@ mod tests {
 
     #[test]
     fn a_plan_recorded_between_the_samples_is_brought_onto_the_clock() {
-        let wave = |shift_s: f64| {
-            let t_s: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.01).collect();
-            let position = t_s.iter().map(|t| 0.3 * (0.4 * (t + shift_s)).sin()).collect();
-            Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] }
-        };
+        let wave = |shift_s: f64| Series::sampled("J", 2000, |t| 0.3 * (0.4 * (t + shift_s)).sin());
         for shift_s in [-0.2, -0.004, 0.0, 0.0071, 0.15] {
             let found = ahead_s(&wave(shift_s), &wave(0.0));
             assert!((found - shift_s).abs() < 0.01 * shift_s.abs() + 1e-4, "{shift_s} {found}");
@@ -250,9 +243,7 @@ mod tests {
     #[test]
     fn a_slow_plan_is_found_however_late_it_is_seen_to_move() {
         let sigmoid = |shift_s: f64, steps: u32| {
-            let t_s: Vec<f64> = (0..steps).map(|k| f64::from(k) * 0.01).collect();
-            let position = t_s.iter().map(|t| 0.8 * (0.5 + 0.5 * ((t - shift_s) / 12.0).tanh())).collect();
-            Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] }
+            Series::sampled("J", steps, |t| 0.8 * (0.5 + 0.5 * ((t - shift_s) / 12.0).tanh()))
         };
         let plan = sigmoid(30.0, 6000);
         for off_s in [-4.0, -1.6, -0.7, 0.0, 0.7, 1.6, 4.0] {

@@ -3,12 +3,13 @@
 use cpu_time::ProcessTime;
 use hydrotrace::{
     fit::{Excitation, Learning, learn},
-    plant::{Plant, Variation},
+    plant::Plant,
 };
 
 use crate::support::{
     compensation::{Figures, PRESETS, changed, check, learnt, ratio, tried},
     machine::{excitation, fitted, run, task},
+    variation::Variation,
 };
 
 fn row(title: &str, before: &Figures, after: &Figures) {

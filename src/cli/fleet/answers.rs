@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use chrono::{DateTime, NaiveDate};
-use clap::ValueEnum;
+use clap::{ValueEnum, builder::PossibleValue};
+use serde::Serialize;
 
 use super::{
     CliError, Outcome, Run,
@@ -36,6 +37,17 @@ struct AskArgs {
     since: Option<i64>,
 }
 
+/// The same of one machine.
+#[derive(Debug, clap::Args)]
+struct OneArgs {
+    #[command(flatten)]
+    ask: AskArgs,
+
+    /// One machine only
+    #[arg(long, value_name = "MACHINE")]
+    machine: Option<String>,
+}
+
 /// The form of an answer.
 #[derive(Debug, clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "options of which at most one form is given")]
@@ -65,24 +77,18 @@ struct FormArgs {
     all: bool,
 }
 
-/// What joints are judged by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Metric {
-    /// Largest tracking error after a start
-    Peak,
-    /// Dead time of a start
-    Delay,
-    /// Lag over a run
-    Lag,
-}
+impl ValueEnum for By {
+    fn value_variants<'a>() -> &'a [Self] {
+        &Self::ALL
+    }
 
-impl Metric {
-    fn by(self) -> By {
-        match self {
-            Self::Peak => By::Peak,
-            Self::Delay => By::Delay,
-            Self::Lag => By::Lag,
-        }
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, help) = match self {
+            Self::Peak => ("peak", "Largest tracking error after a start"),
+            Self::Delay => ("delay", "Dead time of a start"),
+            Self::Lag => ("lag", "Lag over a run"),
+        };
+        Some(PossibleValue::new(name).help(help))
     }
 }
 
@@ -96,8 +102,14 @@ pub(super) fn date(text: &str) -> Result<i64, String> {
 }
 
 impl AskArgs {
-    fn filter(&self, machine: Option<&String>) -> Filter {
-        Filter { machine: machine.cloned(), joint: self.joint.clone(), since_us: self.since }
+    fn filter(&self) -> Filter {
+        Filter { machine: None, joint: self.joint.clone(), since_us: self.since }
+    }
+}
+
+impl OneArgs {
+    fn filter(&self) -> Filter {
+        Filter { machine: self.machine.clone(), ..self.ask.filter() }
     }
 }
 
@@ -114,26 +126,22 @@ impl FormArgs {
         Target::new(Form::of(&forms, file), file)
     }
 
-    fn most(&self) -> usize {
-        if self.all { usize::MAX } else { MOST }
-    }
-
     /// Writes an answer in the form that was asked for.
-    fn write(
+    fn write<T: Serialize>(
         &self,
         console: &mut Console<'_>,
-        [json, csv, html]: [&dyn Fn() -> String; 3],
-        text: &dyn Fn() -> kit::Document,
-        (remarks, verdicts): (&Remarks, &[kit::Sentence]),
+        (found, remarks): (&T, &Remarks),
+        [csv, html]: [fn(&T) -> String; 2],
+        text: fn(&T, usize) -> kit::Document,
     ) -> Result<Outcome, CliError> {
         let target = self.target()?;
         let result = match target.form {
-            Form::Json => json(),
-            Form::Csv => csv(),
-            Form::Html => html(),
-            _ => target.text(&text()),
+            Form::Json => pretty(found),
+            Form::Csv => csv(found),
+            Form::Html => html(found),
+            _ => target.text(&text(found, if self.all { usize::MAX } else { MOST })),
         };
-        console.finish(&target, &result, remarks, verdicts)
+        console.finish(&target, &result, remarks, &[])
     }
 }
 
@@ -141,15 +149,11 @@ impl FormArgs {
 #[derive(Debug, clap::Args)]
 pub(super) struct WorstArgs {
     #[command(flatten)]
-    ask: AskArgs,
-
-    /// One machine only
-    #[arg(long, value_name = "MACHINE")]
-    machine: Option<String>,
+    of: OneArgs,
 
     /// What joints are ranked by
-    #[arg(long, value_enum, default_value_t = Metric::Peak)]
-    by: Metric,
+    #[arg(long, value_enum, default_value_t = By::Peak)]
+    by: By,
 
     #[command(flatten)]
     form: FormArgs,
@@ -157,10 +161,9 @@ pub(super) struct WorstArgs {
 
 impl Run for WorstArgs {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
-        let found = worst(&self.ask.dataset, &self.ask.filter(self.machine.as_ref()), self.by.by())?;
-        let forms: [&dyn Fn() -> String; 3] =
-            [&|| pretty(&found), &|| words::worst_csv(&found), &|| words::worst_page(&found)];
-        self.form.write(console, forms, &|| words::worst(&found, self.form.most()), (&found.remarks, &[]))
+        let found = worst(&self.of.ask.dataset, &self.of.filter(), self.by)?;
+        let forms = [words::worst_csv, words::worst_page];
+        self.form.write(console, (&found, &found.remarks), forms, words::worst)
     }
 }
 
@@ -168,15 +171,11 @@ impl Run for WorstArgs {
 #[derive(Debug, clap::Args)]
 pub(super) struct DriftArgs {
     #[command(flatten)]
-    ask: AskArgs,
-
-    /// One machine only
-    #[arg(long, value_name = "MACHINE")]
-    machine: Option<String>,
+    of: OneArgs,
 
     /// One metric only; fewer trends are corrected for [default: peak error and dead time]
     #[arg(long, value_enum)]
-    by: Option<Metric>,
+    by: Option<By>,
 
     #[command(flatten)]
     form: FormArgs,
@@ -184,11 +183,10 @@ pub(super) struct DriftArgs {
 
 impl Run for DriftArgs {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
-        let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by.by()]);
-        let found = drift(&self.ask.dataset, &self.ask.filter(self.machine.as_ref()), &by)?;
-        let forms: [&dyn Fn() -> String; 3] =
-            [&|| pretty(&found), &|| words::drift_csv(&found), &|| words::drift_page(&found)];
-        self.form.write(console, forms, &|| words::drift(&found, self.form.most()), (&found.remarks, &[]))
+        let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by]);
+        let found = drift(&self.of.ask.dataset, &self.of.filter(), &by)?;
+        let forms = [words::drift_csv, words::drift_page];
+        self.form.write(console, (&found, &found.remarks), forms, words::drift)
     }
 }
 
@@ -209,7 +207,7 @@ pub(super) struct EffectArgs {
 
     /// One metric only; fewer effects are corrected for [default: peak error and dead time]
     #[arg(long, value_enum)]
-    by: Option<Metric>,
+    by: Option<By>,
 
     #[command(flatten)]
     form: FormArgs,
@@ -217,16 +215,15 @@ pub(super) struct EffectArgs {
 
 impl Run for EffectArgs {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
-        let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by.by()]);
+        let by = self.by.map_or(vec![By::Peak, By::Delay], |by| vec![by]);
         let dataset = &self.ask.dataset;
-        let filter = self.ask.filter(None);
+        let filter = self.ask.filter();
         let found = match (&self.machine, self.at) {
             (Some(machine), Some(at_us)) => effect(dataset, machine, at_us, &filter, &by),
             (machine, _) => effect_of_last_note(dataset, machine.as_deref(), &filter, &by),
         }?;
-        let forms: [&dyn Fn() -> String; 3] =
-            [&|| pretty(&found), &|| words::effect_csv(&found), &|| words::effect_page(&found)];
-        self.form.write(console, forms, &|| words::effect(&found, self.form.most()), (&found.remarks, &[]))
+        let forms = [words::effect_csv, words::effect_page];
+        self.form.write(console, (&found, &found.remarks), forms, words::effect)
     }
 }
 
@@ -234,11 +231,7 @@ impl Run for EffectArgs {
 #[derive(Debug, clap::Args)]
 pub(super) struct GateArgs {
     #[command(flatten)]
-    ask: AskArgs,
-
-    /// One machine only
-    #[arg(long, value_name = "MACHINE")]
-    machine: Option<String>,
+    of: OneArgs,
 
     /// Growth of the dead time a day, at most
     #[arg(long, value_name = "MS", value_parser = milliseconds)]
@@ -284,8 +277,8 @@ impl Run for GateArgs {
         if gates.is_empty() {
             return Err(CliError::Usage("no limit is given; --max-drift-delay-ms 5 is one".to_owned()));
         }
-        let filter = self.ask.filter(self.machine.as_ref());
-        let found = gate(&self.ask.dataset, &filter, &gates, self.allow_empty)?;
+        let filter = self.of.filter();
+        let found = gate(&self.of.ask.dataset, &filter, &gates, self.allow_empty)?;
         let form = Form::of(&[(self.json, Form::Json), (self.markdown, Form::Markdown)], None);
         let target = Target::new(form, None)?;
         let result = if self.json { pretty(&found) } else { target.text(&words::gate(&found)) };

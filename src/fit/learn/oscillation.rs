@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::model::STEP_S;
 use crate::{
-    math::{lowpass, range},
+    math::{lowpass, range, whole},
     series::Track,
 };
 
@@ -104,13 +104,12 @@ struct Turns {
     period_s: f64,
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few hundred steps")]
 fn turns(values: &[f64]) -> Turns {
     let power: f64 = values.iter().map(|x| x * x).sum();
     if power <= 0.0 {
         return Turns::default();
     }
-    let most = ((LONGEST_S / STEP_S) as usize).min(values.len() / 2);
+    let most = whole(LONGEST_S / STEP_S).min(values.len() / 2);
     let correlation =
         |lag: usize| values.iter().zip(values.iter().skip(lag)).map(|(a, b)| a * b).sum::<f64>() / power;
     let all: Vec<f64> = (0..most).map(correlation).collect();

@@ -2,30 +2,22 @@
 
 use std::borrow::Cow;
 
-use ::csv::ByteRecord;
-
 use super::{
     CsvOptions,
-    dialect::detect,
-    head::{Head, read_head},
+    head::{Head, looked_at},
     number::{number, with_unit},
-    rows::{Rows, writer},
+    rows::rewritten,
     unit::{Measure, Unit},
 };
-use crate::remark::Remarks;
 
 /// The text with plain numbers below headers that name the unit.
 pub(super) fn without_units<'a>(file: &str, text: Cow<'a, [u8]>, options: &CsvOptions) -> Cow<'a, [u8]> {
-    let Ok(dialect) = detect(file, &text, options) else { return text };
-    let head = read_head(&text, dialect, &mut Remarks::default());
+    let Some((dialect, head)) = looked_at(file, &text, options) else { return text };
     let units: Vec<Option<Unit>> = (0..dialect.width).map(|column| unit_of(&head, column)).collect();
     if units.iter().all(Option::is_none) {
         return text;
     }
-    let mut plain = writer(dialect.separator);
-    let mut rows = Rows::new(&text, dialect.separator);
-    let mut record = ByteRecord::new();
-    while let Some(line) = rows.next(&mut record) {
+    let plain = rewritten(&text, dialect.separator, |line, record, plain| {
         let cells = record.iter().zip(units.iter().copied().chain(std::iter::repeat(None)));
         let cells = cells.map(|(cell, unit)| match unit {
             Some(unit) if line == head.line => {
@@ -36,11 +28,9 @@ pub(super) fn without_units<'a>(file: &str, text: Cow<'a, [u8]>, options: &CsvOp
             Some(unit) if line >= head.first_line => in_unit(cell, unit, dialect.decimal_comma),
             _ => Cow::Borrowed(cell),
         });
-        if plain.write_record(cells).is_err() {
-            return text;
-        }
-    }
-    plain.into_inner().map_or(text, Cow::Owned)
+        plain.write_record(cells)
+    });
+    plain.map_or(text, Cow::Owned)
 }
 
 /// The first unit of a column in which most cells have one. Times are read with theirs.

@@ -7,9 +7,9 @@ use ::csv::ByteRecord;
 use super::{
     CsvOptions, Role, clock,
     column::{named, pasted},
-    dialect::{Dialect, detect},
-    head::{Head, read_head},
-    label::{Label, label},
+    dialect::Dialect,
+    head::{Head, looked_at},
+    label::Label,
     restarts::runs,
     rows::{Rows, writer},
     time::TimeSource,
@@ -48,8 +48,7 @@ pub(super) fn joined(
     if options.time.is_some() || options.rate_hz.is_some() {
         return None;
     }
-    let dialect = detect(file, text, options).ok()?;
-    let head = read_head(text, dialect, &mut Remarks::default());
+    let (dialect, head) = looked_at(file, text, options)?;
     let (clocks, groups) = groups(&head, dialect, options)?;
     let first = groups.first()?;
     let Some(samples) = in_order(samples(text, &head, dialect, &groups), &groups) else {
@@ -91,8 +90,8 @@ pub(super) fn joined(
 /// Whether there are several time columns that say different times, each of its own signals.
 pub(super) fn are_several(file: &str, text: &[u8], options: &CsvOptions) -> bool {
     let of = || {
-        let dialect = detect(file, text, options).ok()?;
-        groups(&read_head(text, dialect, &mut Remarks::default()), dialect, options)
+        let (dialect, head) = looked_at(file, text, options)?;
+        groups(&head, dialect, options)
     };
     options.time.is_none() && options.rate_hz.is_none() && of().is_some()
 }
@@ -161,9 +160,7 @@ fn in_unit(ns: i64, source: &TimeSource, comma: bool) -> Option<Vec<u8>> {
 
 /// All columns of times, and those that are of signals that are wanted.
 fn groups(head: &Head, dialect: Dialect, options: &CsvOptions) -> Option<(Vec<usize>, Vec<Group>)> {
-    let below = |column: usize| head.units.as_ref().and_then(|units| units.get(column)).map(String::as_str);
-    let labels: Vec<Label> =
-        head.names.iter().enumerate().map(|(column, name)| label(name, below(column))).collect();
+    let labels = head.labels();
     let of = |time: &usize| clock::of_column(head, &labels, dialect, options, *time);
     // What goes up and down is no clock.
     let is_clock = |column: &usize| labels[*column].is_time && of(column).is_none_or(|found| found.steady);

@@ -2,15 +2,13 @@
 
 use std::borrow::Cow;
 
-use ::csv::ByteRecord;
-
 use super::{
     CsvOptions, Separator,
-    dialect::{Dialect, detect},
-    head::read_head,
+    dialect::Dialect,
+    head::looked_at,
     label::label,
     number::{Looks, looks},
-    rows::{Rows, writer},
+    rows::rewritten,
 };
 use crate::remark::{Code, Remarks};
 
@@ -118,9 +116,8 @@ fn groups(cell: &[u8], mark: u8) -> Option<Groups> {
 
 /// Whether commas separate cells, and numbers in quotes have a comma that sets no thousands apart: a decimal one.
 pub(super) fn has_quoted_commas(file: &str, text: &[u8], options: &CsvOptions) -> bool {
-    let dialect = detect(file, text, options).ok();
-    let Some(dialect) = dialect.filter(|one| one.separator == Separator::Byte(b',')) else { return false };
-    let head = read_head(text, dialect, &mut Remarks::default());
+    let found = looked_at(file, text, options);
+    let Some((_, head)) = found.filter(|one| one.0.separator == Separator::Byte(b',')) else { return false };
     let cells = || head.sample.iter().flatten();
     let decimal =
         |cell: &Vec<u8>| memchr::memchr(b',', cell).is_some() && groups(cell, b',') == Some(Groups::Decimal);
@@ -137,8 +134,7 @@ fn grouped(
     options: &CsvOptions,
     remarks: &mut Remarks,
 ) -> Option<(Dialect, u8, Vec<bool>)> {
-    let dialect = detect(file, text, options).ok()?;
-    let head = read_head(text, dialect, &mut Remarks::default());
+    let (dialect, head) = looked_at(file, text, options)?;
     let cells = |column: usize| head.sample.iter().filter_map(move |row| row.get(column)).map(Vec::as_slice);
     for mark in [b',', b'.'] {
         let (mut certain, mut perhaps, mut decimal) = (false, None, false);
@@ -183,20 +179,16 @@ fn grouped(
 
 /// The same table with each cell of grouped digits without the mark, in columns that may have it.
 fn without_groups(text: &[u8], dialect: Dialect, mark: u8, columns: &[bool]) -> Option<Vec<u8>> {
-    let mut plain = writer(dialect.separator);
-    let mut rows = Rows::new(text, dialect.separator);
-    let mut record = ByteRecord::new();
-    while rows.next(&mut record).is_some() {
-        let may = |at: usize| columns.get(at).copied().unwrap_or(false);
+    let may = |at: usize| columns.get(at).copied().unwrap_or(false);
+    rewritten(text, dialect.separator, |_, record, plain| {
         let cells = record.iter().enumerate().map(|(at, cell)| match groups(cell, mark) {
             Some(Groups::WithDecimals | Groups::Perhaps) if may(at) => {
                 Cow::Owned(cell.iter().copied().filter(|byte| *byte != mark).collect::<Vec<u8>>())
             }
             _ => Cow::Borrowed(cell),
         });
-        plain.write_record(cells).ok()?;
-    }
-    plain.into_inner().ok()
+        plain.write_record(cells)
+    })
 }
 
 #[cfg(test)]

@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use ::csv::ByteRecord;
 
 use super::{
-    dialect::{Dialect, head},
+    CsvOptions,
+    dialect::{Dialect, detect, head},
+    label::{Label, label},
     number::{Looks, looks},
     rows::{Rows, cell_text},
     scale::unit_alone,
@@ -38,10 +40,25 @@ pub(super) struct Head {
     pub(super) sample: Vec<Vec<Vec<u8>>>,
 }
 
+impl Head {
+    /// What the header and the row of units below it say of each column.
+    pub(super) fn labels(&self) -> Vec<Label> {
+        let below = |column: usize| self.units.as_ref().and_then(|units| units.get(column));
+        let names = self.names.iter().enumerate();
+        names.map(|(column, name)| label(name, below(column).map(String::as_str))).collect()
+    }
+}
+
 const SAMPLE_ROWS: usize = 200;
 
 /// So many rows with numbers may stand above the names of columns.
 const FEW_ROWS: usize = 5;
+
+/// How a text is written and its head, without a remark; `None` if it is no table.
+pub(super) fn looked_at(file: &str, text: &[u8], options: &CsvOptions) -> Option<(Dialect, Head)> {
+    let dialect = detect(file, text, options).ok()?;
+    Some((dialect, read_head(text, dialect, &mut Remarks::default())))
+}
 
 pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) -> Head {
     let start = head(text);

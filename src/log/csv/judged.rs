@@ -6,9 +6,8 @@ use ::csv::ByteRecord;
 
 use super::{
     CsvOptions,
-    dialect::detect,
-    head::{Head, read_head},
-    rows::{Rows, cell_text, writer},
+    head::{Head, looked_at},
+    rows::{cell_text, rewritten},
 };
 use crate::remark::{Code, Remarks};
 
@@ -90,21 +89,16 @@ fn opc(cell: &[u8]) -> Option<u8> {
 }
 
 fn kept(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Option<Vec<u8>> {
-    let dialect = detect(file, text, options).ok()?;
-    let head = read_head(text, dialect, &mut Remarks::default());
+    let (dialect, head) = looked_at(file, text, options)?;
     let judge = Judge::of(&head)?;
-    let (mut kept, mut bad) = (writer(dialect.separator), 0);
-    let mut rows = Rows::new(text, dialect.separator);
-    let mut record = ByteRecord::new();
-    while let Some(line) = rows.next(&mut record) {
-        if line >= head.first_line && judge.is_bad(&record) {
-            bad += 1;
-        } else {
-            kept.write_byte_record(&record).ok()?;
-        }
-    }
+    let mut bad = 0;
+    let kept = rewritten(text, dialect.separator, |line, record, kept| {
+        let is_bad = line >= head.first_line && judge.is_bad(record);
+        bad += u64::from(is_bad);
+        if is_bad { Ok(()) } else { kept.write_byte_record(record) }
+    });
     judge.remark(bad, remarks);
-    if bad == 0 { None } else { kept.into_inner().ok() }
+    kept.filter(|_| bad > 0)
 }
 
 #[cfg(test)]

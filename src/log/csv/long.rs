@@ -8,8 +8,8 @@ use ::csv::ByteRecord;
 use super::{
     CsvOptions, Role,
     date::{DateForm, Part},
-    dialect::{Dialect, detect},
-    head::{Head, read_head},
+    dialect::Dialect,
+    head::{Head, looked_at},
     keys::{Changes, NAMES},
     label::label,
     number::{Looks, looks, number},
@@ -56,8 +56,7 @@ pub(super) fn widened(
     options: &CsvOptions,
     remarks: &mut Remarks,
 ) -> Option<(Vec<u8>, CsvOptions)> {
-    let dialect = detect(file, text, options).ok()?;
-    let head = read_head(text, dialect, &mut Remarks::default());
+    let (dialect, head) = looked_at(file, text, options)?;
     let long = Long::of(dialect, head, options)?;
     let gathered = long.gather(text)?;
     let mut wide = writer(dialect.separator);

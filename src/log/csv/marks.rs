@@ -7,10 +7,9 @@ use ::csv::ByteRecord;
 
 use super::{
     CsvError, CsvOptions, Separator,
-    dialect::detect,
-    head::read_head,
+    head::looked_at,
     label::label,
-    rows::{Rows, writer},
+    rows::{Rows, rewritten},
 };
 use crate::remark::{Code, Remarks};
 
@@ -146,8 +145,8 @@ pub(super) fn by_column(
 ) -> Option<(Vec<u8>, CsvOptions)> {
     let may =
         matches!(error, CsvError::NoNumbers { .. } | CsvError::NoStamps { .. } | CsvError::NoTime { .. });
-    let dialect = detect(file, text, options).ok().filter(|one| may && one.separator != Separator::Space)?;
-    let head = read_head(text, dialect, &mut Remarks::default());
+    let found = looked_at(file, text, options);
+    let (dialect, head) = found.filter(|(one, _)| may && one.separator != Separator::Space)?;
     let mut columns = vec![Column::default(); head.names.len()];
     let mut record = ByteRecord::new();
     let mut rows = Rows::new(text, dialect.separator);
@@ -185,20 +184,18 @@ pub(super) fn by_column(
         changed.join(", ")
     );
     remarks.add(Code::Guessed, changed.len() as u64, message);
-    let mut plain = writer(dialect.separator);
-    let mut rows = Rows::new(text, dialect.separator);
-    while let Some(line) = rows.next(&mut record) {
+    let plain = rewritten(text, dialect.separator, |line, record, plain| {
         let cells = record.iter().enumerate().map(|(at, cell)| match decimals.get(at).copied() {
-            Some(decimal) if line >= head.first_line => rewritten(cell, decimal, target),
+            Some(decimal) if line >= head.first_line => with_mark(cell, decimal, target),
             _ => Cow::Borrowed(cell),
         });
-        plain.write_record(cells).ok()?;
-    }
-    Some((plain.into_inner().ok()?, dialect.rewritten(options)))
+        plain.write_record(cells)
+    });
+    Some((plain?, dialect.rewritten(options)))
 }
 
 /// A number without marks between thousands and with the decimal mark `target`; any other cell as it is.
-fn rewritten(cell: &[u8], decimal: Option<u8>, target: u8) -> Cow<'_, [u8]> {
+fn with_mark(cell: &[u8], decimal: Option<u8>, target: u8) -> Cow<'_, [u8]> {
     match unspaced(cell.trim_ascii()) {
         Some(plain) if says(&plain).is_some() => {
             let kept = plain.iter().filter(|byte| !MARKS.contains(byte) || Some(**byte) == decimal);

@@ -261,11 +261,7 @@ impl Form {
             let [names, cells] = [head.written.len(), dialect.width];
             return Err(CsvError::ShortHeader { line: head.line, names, cells });
         }
-        let below =
-            |column: usize| head.units.as_ref().and_then(|units| units.get(column)).map(String::as_str);
-        let names = head.names.iter().enumerate();
-        let mut labels: Vec<label::Label> =
-            names.map(|(column, name)| label::label(name, below(column))).collect();
+        let mut labels = head.labels();
         settle::leave_out_names(&mut labels, &head);
         settle::settle(&mut labels);
         settle::take_slides(&mut labels, &options.slides);

@@ -11,11 +11,10 @@ use ::csv::ByteRecord;
 use super::{
     CsvError, CsvOptions,
     column::find,
-    dialect::{Dialect, detect},
-    head::read_head,
-    rows::{Rows, cell_text, writer},
+    dialect::Dialect,
+    head::looked_at,
+    rows::{Rows, cell_text, rewritten},
 };
-use crate::remark::Remarks;
 
 /// Headers of columns that say of which machine a row is.
 const MACHINES: [&str; 24] = [
@@ -93,8 +92,7 @@ struct Table {
 
 impl Table {
     fn of(file: &str, text: &[u8], options: &CsvOptions) -> Result<Option<Self>, CsvError> {
-        let Ok(dialect) = detect(file, text, options) else { return Ok(None) };
-        let head = read_head(text, dialect, &mut Remarks::default());
+        let Some((dialect, head)) = looked_at(file, text, options) else { return Ok(None) };
         let is_machine =
             |name: &String| MACHINES.contains(&name.trim().to_lowercase().replace([' ', '-'], "_").as_str());
         let column = match &options.only {
@@ -118,15 +116,10 @@ impl Table {
     /// The table with all rows above the first of numbers, and of those the ones with a value in the column.
     fn rows_with(&self, text: &[u8], value: &str) -> Option<Vec<u8>> {
         let only = Only { column: self.column, value: value.to_owned() };
-        let mut kept = writer(self.dialect.separator);
-        let mut rows = Rows::new(text, self.dialect.separator);
-        let mut record = ByteRecord::new();
-        while let Some(line) = rows.next(&mut record) {
-            if line < self.first_line || only.holds(&record) {
-                kept.write_byte_record(&record).ok()?;
-            }
-        }
-        kept.into_inner().ok()
+        rewritten(text, self.dialect.separator, |line, record, kept| {
+            let keeps = line < self.first_line || only.holds(record);
+            if keeps { kept.write_byte_record(record) } else { Ok(()) }
+        })
     }
 }
 

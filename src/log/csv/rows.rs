@@ -71,6 +71,20 @@ pub(super) fn writer(separator: Separator) -> Writer<Vec<u8>> {
     WriterBuilder::new().delimiter(byte).flexible(true).from_writer(Vec::new())
 }
 
+/// A text with each row written anew, by its line.
+pub(super) fn rewritten(
+    text: &[u8],
+    separator: Separator,
+    mut row: impl FnMut(u64, &ByteRecord, &mut Writer<Vec<u8>>) -> ::csv::Result<()>,
+) -> Option<Vec<u8>> {
+    let (mut out, mut rows) = (writer(separator), Rows::new(text, separator));
+    let mut record = ByteRecord::new();
+    while let Some(line) = rows.next(&mut record) {
+        row(line, &record, &mut out).ok()?;
+    }
+    out.into_inner().ok()
+}
+
 /// The line of a record, whose position is where the one before ended: blank lines and comments
 /// may lie between.
 fn line_of(text: &[u8], position: &::csv::Position) -> u64 {

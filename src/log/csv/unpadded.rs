@@ -6,10 +6,9 @@ use ::csv::ByteRecord;
 
 use super::{
     CsvOptions, Separator,
-    dialect::detect,
-    head::read_head,
+    head::looked_at,
     label::label,
-    rows::{Rows, writer},
+    rows::{Rows, rewritten},
 };
 use crate::remark::{Code, Remarks};
 
@@ -23,12 +22,11 @@ pub(super) fn padded<'a>(
     options: &CsvOptions,
     remarks: &mut Remarks,
 ) -> Cow<'a, [u8]> {
-    rewritten(file, &text, options, remarks).map_or(text, Cow::Owned)
+    with_zeros(file, &text, options, remarks).map_or(text, Cow::Owned)
 }
 
-fn rewritten(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Option<Vec<u8>> {
-    let dialect = detect(file, text, options).ok()?;
-    let head = read_head(text, dialect, &mut Remarks::default());
+fn with_zeros(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Option<Vec<u8>> {
+    let (dialect, head) = looked_at(file, text, options)?;
     let is_time = |at: &usize| {
         let given = options.time.as_deref().is_some_and(|time| time == head.names[*at]);
         given || label(&head.names[*at], None).is_time
@@ -38,28 +36,26 @@ fn rewritten(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remark
         cells.clone().count() > 2 && cells.into_iter().all(|cell| parts(cell).is_some())
     })?;
     let digits = digits(text, dialect.separator, head.first_line, column)?;
-    let (mut out, mut rows, mut record) =
-        (writer(dialect.separator), Rows::new(text, dialect.separator), ByteRecord::new());
     let mut changed = 0;
-    while let Some(line) = rows.next(&mut record) {
+    let padded = rewritten(text, dialect.separator, |line, record, out| {
         for (at, cell) in record.iter().enumerate() {
             match parts(cell).filter(|_| at == column && line >= head.first_line) {
                 Some((whole, fraction)) => {
                     changed += 1;
-                    out.write_field(format!("{whole}.{fraction:0>digits$}")).ok()?;
+                    out.write_field(format!("{whole}.{fraction:0>digits$}"))?;
                 }
-                None => out.write_field(cell).ok()?,
+                None => out.write_field(cell)?,
             }
         }
-        out.write_record(None::<&[u8]>).ok()?;
-    }
+        out.write_record(None::<&[u8]>)
+    });
     let unit = ["ms", "us", "ns"][digits / 3 - 1];
     let message = format!(
         "times in {:?} with whole {unit} behind the point, without zeros before: only so do they rise",
         head.names[column]
     );
     remarks.add(Code::Guessed, changed, message);
-    out.into_inner().ok()
+    padded
 }
 
 /// The digits that the fractions have with their zeros; `None` where the times rise as they stand, or do not either way.

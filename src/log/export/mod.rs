@@ -10,7 +10,7 @@ use super::{csv::AngleUnit, read::recording::Recording};
 use crate::{
     atomic_file::AtomicError,
     series::{JointKind, Track, align},
-    units::{DEGREE_RAD, NS_PER_S, seconds_since},
+    units::{DEGREE_RAD, nanoseconds, seconds_since},
 };
 
 /// Why a table was not written.
@@ -72,7 +72,7 @@ impl RunTable {
                 let (unit, factor) = unit_of(kind);
                 all.push(Samples {
                     name: format!("{joint}_{what}_{unit}{per}"),
-                    stamp_ns: t_s.iter().map(|&t_s| stamp_ns(epoch_ns, t_s)).collect(),
+                    stamp_ns: t_s.iter().map(|&t_s| epoch_ns.saturating_add(nanoseconds(t_s))).collect(),
                     values: values.iter().map(|value| value * factor).collect(),
                 });
             };
@@ -144,9 +144,4 @@ fn joints(recording: &Recording) -> Vec<&str> {
     let (one, other) = if asked.tracks.is_empty() { (measured, asked) } else { (asked, measured) };
     let names = one.tracks.iter().map(Track::name);
     names.filter(|joint| other.tracks.is_empty() || other.track(joint).is_some()).collect()
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "saturates far beyond any log")]
-fn stamp_ns(epoch_ns: i64, t_s: f64) -> i64 {
-    epoch_ns.saturating_add((t_s * NS_PER_S).round() as i64)
 }

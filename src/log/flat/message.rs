@@ -4,7 +4,10 @@ use chrono::DateTime;
 use serde_json::{Number, Value};
 
 use super::leaves::{Kind, Leaves, NANOSECONDS, SECONDS};
-use crate::log::decode::{Numbers, Sink, Slot, Texts};
+use crate::{
+    log::decode::{Numbers, Sink, Slot, Texts},
+    units::whole_ns,
+};
 
 /// Name of a number, parts between slashes, and the number.
 pub(super) type Cells = Vec<(String, f64)>;
@@ -169,10 +172,8 @@ fn since_1970_ns(number: &Number) -> Option<i64> {
     const UNITS_NS: [i64; 4] = [1, 1_000, 1_000_000, 1_000_000_000];
     let value = number.as_f64()?;
     let unit_ns = UNITS_NS.into_iter().find(|unit_ns| SECONDS.contains(&(value * *unit_ns as f64 / 1e9)))?;
-    #[expect(clippy::cast_possible_truncation, reason = "within the range of i64")]
-    let rounded = |ns: f64| ns.round() as i64;
     let exact = number.as_i64().and_then(|whole| whole.checked_mul(unit_ns));
-    Some(exact.unwrap_or_else(|| rounded(value * unit_ns as f64)))
+    exact.or_else(|| whole_ns(value * unit_ns as f64))
 }
 
 /// What an object says it is of.

@@ -1,7 +1,7 @@
 //! Finds measurements that follow their plan at another time: clocks that differ, or a run at another speed.
 
 use crate::{
-    math::{deviation, quantile, range},
+    math::{deviation, quantile, range, whole},
     series::{Series, Track},
 };
 
@@ -270,8 +270,7 @@ impl Steps {
     /// Before the first step and after the last, the plan holds.
     fn at(&self, t_s: f64) -> f64 {
         let steps = ((t_s - self.first_s) / PLAN_STEP_S).clamp(0.0, (self.position.len() - 1) as f64);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the steps")]
-        let before = steps as usize;
+        let before = whole(steps);
         let (from, to) = (self.position[before], self.position[(before + 1).min(self.position.len() - 1)]);
         from + (steps - steps.floor()) * (to - from)
     }

@@ -12,7 +12,7 @@ use crate::{
         options::{SignalRole, TimeBase},
     },
     remark::Remarks,
-    series::{Series, Signal, Track},
+    series::{Pair, Series, Signal, Track, align},
 };
 
 /// A file of the recording.
@@ -156,6 +156,12 @@ impl Recording {
     /// Whether the log holds a signal.
     pub fn has(&self, role: SignalRole) -> bool {
         self.signals.contains_key(&role)
+    }
+
+    /// The measured joints beside their plan.
+    pub(crate) fn pairs(&self) -> Vec<Pair> {
+        let pair = |track: &Track| align(self.planned.track(track.name())?, track);
+        self.measured.tracks.iter().filter_map(pair).collect()
     }
 
     /// A file stored in the log.

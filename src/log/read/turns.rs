@@ -93,9 +93,7 @@ mod tests {
     use super::*;
 
     fn series(position: impl Fn(f64) -> f64) -> Series {
-        let t_s: Vec<f64> = (0..500).map(|k| f64::from(k) * 0.01).collect();
-        let q = t_s.iter().map(|&t| position(t)).collect();
-        Series { tracks: vec![Track::new("a", t_s, q, &[]).unwrap()] }
+        Series::sampled("a", 500, position)
     }
 
     #[test]

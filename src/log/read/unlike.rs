@@ -243,9 +243,7 @@ mod tests {
     use super::*;
 
     fn track(name: &str, position: impl Fn(f64) -> f64) -> Track {
-        let t_s: Vec<f64> = (0..3000).map(|k| f64::from(k) * 0.01).collect();
-        let q = t_s.iter().map(|&t| position(t)).collect();
-        Track::new(name, t_s, q, &[]).unwrap()
+        Track::sampled(name, 3000, position)
     }
 
     /// Remarks on two joints of a plan, of which the first was measured so.
@@ -334,11 +332,7 @@ mod tests {
 
     #[test]
     fn a_lag_in_a_stretch_of_one_motion_is_no_other_zero() {
-        let cut = |position: &dyn Fn(f64) -> f64| {
-            let t_s: Vec<f64> = (0..200).map(|k| f64::from(k) * 0.01).collect();
-            let q = t_s.iter().map(|&t| position(t)).collect();
-            Series { tracks: vec![Track::new("boom", t_s, q, &[]).unwrap()] }
-        };
+        let cut = |position: &dyn Fn(f64) -> f64| Series::sampled("boom", 200, position);
         let rises = |t: f64| 0.3 * (1.0 - (1.2 * t).cos());
         let count = |measured: &dyn Fn(f64) -> f64| {
             let mut remarks = Remarks::default();

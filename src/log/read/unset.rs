@@ -54,9 +54,7 @@ mod tests {
     use super::*;
 
     fn track(position: impl Fn(f64) -> f64) -> Track {
-        let t_s: Vec<f64> = (0..500).map(|k| f64::from(k) * 0.01).collect();
-        let q = t_s.iter().map(|&t| position(t)).collect();
-        Track::new("a", t_s, q, &[]).unwrap()
+        Track::sampled("a", 500, position)
     }
 
     fn ramp(t_s: f64) -> f64 {

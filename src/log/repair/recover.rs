@@ -6,6 +6,8 @@ use std::{
     path::Path,
 };
 
+use serde::{Deserialize, Serialize};
+
 use super::copy::{Copier, CopyError, copy_files, writer};
 use crate::{
     atomic_file::write_atomically,
@@ -21,19 +23,22 @@ use crate::{
 };
 
 /// Counts of a recovery.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Recovered {
     /// Messages in the new log.
     pub messages: u64,
     /// Of these, from chunks that are not as they were written: some may be wrong.
+    #[serde(rename = "doubtful_messages", default)]
     pub doubtful: u64,
     /// Chunks, or runs of messages outside chunks, that were read.
     pub blocks: usize,
-    /// Of these, dropped whole.
+    /// Blocks that could not be read at all.
     pub dropped_blocks: u64,
     /// Attachments in the new log.
     pub attachments: usize,
     /// Losses and doubts; empty if there are none.
+    #[cfg_attr(test, schemars(with = "Vec<crate::remark::Remark>"))]
     pub remarks: Remarks,
 }
 

@@ -9,7 +9,7 @@ use crate::{
             self, Id, Sentence, capital, clean, mm,
             page::{
                 Chapter, Plots, card,
-                chart::{Chart, Panel, Role, Series, Size, at, rounded, span, times},
+                chart::{Chart, Panel, Role, Series, at, rounded, span, times},
                 envelope::envelope,
                 headed,
                 strip::{Row, intervals},
@@ -168,7 +168,7 @@ pub(super) fn pair_charts(comparison: &Comparison) -> Vec<(String, Chart)> {
         let chart = scatter(comparison, &capital(&name), labels, |pair| {
             let change = pair.changes.get(metric.key);
             let both = change.before.zip(change.after).filter(|_| !apart || pair.joint_kind == of);
-            both.map(|(before, after)| (place(before, pair), place(after, pair)))
+            both.map(|(before, after)| [before, after].map(|value| place(value, pair)))
         });
         (name, chart)
     };
@@ -183,45 +183,22 @@ pub(super) fn pair_charts(comparison: &Comparison) -> Vec<(String, Chart)> {
 fn scatter(
     comparison: &Comparison,
     title: &str,
-    [x_label, y_label]: [String; 2],
-    of: impl Fn(&TransitionPair) -> Option<(f64, f64)>,
+    labels: [String; 2],
+    of: impl Fn(&TransitionPair) -> Option<[f64; 2]>,
 ) -> Chart {
     let named = |pair: &TransitionPair| {
         let direction = number(Dimension::Sign, pair.joint_kind, f64::from(pair.direction));
         format!("{} {} {direction} {:.2} s", pair.joint, pair.kind.name(), pair.planned_onset_before_s)
     };
-    let pairs: Vec<(String, f64, f64)> = comparison
-        .pairs
-        .iter()
-        .filter_map(|pair| of(pair).map(|(before, after)| (named(pair), before, after)))
-        .collect();
-    let [low, high] = span(pairs.iter().flat_map(|(_, before, after)| [*before, *after]).chain([0.0]));
+    let pairs: Vec<(String, [f64; 2])> =
+        comparison.pairs.iter().filter_map(|pair| Some((named(pair), of(pair)?))).collect();
+    let [low, high] = span(pairs.iter().flat_map(|(_, both)| *both).chain([0.0]));
     let ends =
         [rounded(low - 0.05 * (high - low) * f64::from(low < 0.0)), rounded(high + 0.05 * (high - low))];
-    let series = |name: &str, role, x, y, names| Series { name: name.to_owned(), role, x, y, names };
     Chart {
         title: title.to_owned(),
-        x_label: x_label.into(),
-        xs: vec![pairs.iter().map(|(_, before, _)| *before).collect(), ends.to_vec()],
-        x_range: Some(ends),
-        panels: vec![Panel {
-            label: y_label,
-            series: vec![
-                series("no change", Role::Guide, 1, ends.to_vec(), Vec::new()),
-                series(
-                    "transition",
-                    Role::Point,
-                    0,
-                    pairs.iter().map(|(_, _, after)| *after).collect(),
-                    pairs.iter().map(|(name, _, _)| name.clone()).collect(),
-                ),
-            ],
-            share: 1.0,
-            range: Some(ends),
-        }],
         height: 360,
-        size: Size::Half,
-        ..Chart::default()
+        ..Chart::against(labels, ["no change", "transition"], ends, pairs)
     }
 }
 
@@ -267,12 +244,7 @@ fn over_time(joint: &str, before: &Pair, after: &Pair, offset_s: f64) -> Chart {
         title: joint.to_owned(),
         x_label: "Time (s)".into(),
         xs,
-        panels: vec![Panel {
-            label: format!("Error ({})", unit(Dimension::Position, before.kind)),
-            series,
-            share: 1.0,
-            range: None,
-        }],
+        panels: vec![Panel::of(format!("Error ({})", unit(Dimension::Position, before.kind)), 1.0, series)],
         group: Some("run"),
         height: 190,
         ..Chart::default()

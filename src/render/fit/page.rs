@@ -115,38 +115,23 @@ fn drawn(fitted: &Fitted, plots: &mut Plots) -> Markup {
 fn peaks(fitted: &Fitted, kind: JointKind) -> Option<Chart> {
     let shown = |rad: f64| rounded(on_paper(kind, rad));
     let own = |stretch: &&HeldOut| fitted.fit.joint(&stretch.joint).is_some_and(|joint| joint.kind == kind);
-    let starts: Vec<(String, f64, f64)> = fitted
+    let starts: Vec<(String, [f64; 2])> = fitted
         .held_out
         .iter()
         .filter(own)
         .flat_map(|stretch| {
-            stretch.peaks_rad.iter().map(|peaks| (stretch.joint.clone(), shown(peaks[1]), shown(peaks[0])))
+            stretch.peaks_rad.iter().map(|peaks| (stretch.joint.clone(), [peaks[1], peaks[0]].map(shown)))
         })
         .collect();
-    let [_, most] =
-        span(starts.iter().flat_map(|(_, predicted, measured)| [*predicted, *measured]).chain([0.0]));
+    let [_, most] = span(starts.iter().flat_map(|(_, both)| *both).chain([0.0]));
     let ends = [0.0, rounded(1.05 * most)];
-    let series = |name: &str, role, x, y, names| Series { name: name.to_owned(), role, x, y, names };
-    let measured = starts.iter().map(|start| start.2).collect();
-    let names = starts.iter().map(|start| start.0.clone()).collect();
+    let labels =
+        ["Predicted", "Measured"].map(|side| format!("{side} ({})", unit(Dimension::Position, kind)));
     (!starts.is_empty()).then(|| Chart {
         title: "Peak error after each start".to_owned(),
         note: "on the line: as predicted".to_owned(),
-        x_label: format!("Predicted ({})", unit(Dimension::Position, kind)).into(),
-        xs: vec![starts.iter().map(|start| start.1).collect(), ends.to_vec()],
-        x_range: Some(ends),
-        panels: vec![Panel {
-            label: format!("Measured ({})", unit(Dimension::Position, kind)),
-            series: vec![
-                series("as predicted", Role::Guide, 1, ends.to_vec(), Vec::new()),
-                series("start", Role::Point, 0, measured, names),
-            ],
-            share: 1.0,
-            range: Some(ends),
-        }],
         height: 260,
-        size: Size::Half,
-        ..Chart::default()
+        ..Chart::against(labels, ["as predicted", "start"], ends, starts)
     })
 }
 
@@ -173,15 +158,14 @@ fn course(fitted: &Fitted, joint: &JointFit) -> Option<Chart> {
         note: format!("R2 {:.2}", joint.held_out_r2),
         x_label: "Time (s)".into(),
         xs: vec![times(&t_s, &places)],
-        panels: vec![Panel {
-            label: format!("Error ({})", unit(Dimension::Position, joint.kind)),
-            series: vec![
+        panels: vec![Panel::of(
+            format!("Error ({})", unit(Dimension::Position, joint.kind)),
+            1.0,
+            vec![
                 series("predicted", Role::Planned, &predicted),
                 series("measured", Role::Measured, &measured),
             ],
-            share: 1.0,
-            range: None,
-        }],
+        )],
         group: Some("run"),
         height: 260,
         size: Size::Half,

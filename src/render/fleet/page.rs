@@ -268,7 +268,6 @@ fn chart(trend: &JointTrend) -> Chart {
         },
         |(at, line, what)| ("level", at, line, what),
     );
-    let series = |name: &str, role, x, y, names| Series { name: name.to_owned(), role, x, y, names };
     Chart {
         title: format!("{} {}: {}", trend.machine, trend.joint_and_direction(), name(trend.metric)),
         note: format!("{what}, q = {}", probability(answers::q(trend))),
@@ -279,8 +278,8 @@ fn chart(trend: &JointTrend) -> Chart {
             format!("{} {}", name(trend.metric), shown_unit(unit)),
             1.0,
             vec![
-                series(guide, Role::Guide, 1, line, Vec::new()),
-                series("run", Role::Point, 0, y, names.collect()),
+                Series::of(guide, Role::Guide, 1, line),
+                Series::of("run", Role::Point, 0, y).named(names.collect()),
             ],
         )],
         height: 190,

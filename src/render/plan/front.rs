@@ -56,7 +56,6 @@ fn projection(front: &PlanDocument, across: Objective, up: Objective) -> Chart {
     let (upper, lower) = (up.row().short, across.row().short);
     let mut title = format!("{upper} over {lower}");
     title[..1].make_ascii_uppercase();
-    let series = |name: &str, role, x, y, names| Series { name: name.to_owned(), role, x, y, names };
     let of = |plans: &mut dyn Iterator<Item = &Objectives>, k: Objective| {
         plans.map(|f| (k.shown(f[k]) * 1e5).round() / 1e5).collect::<Vec<f64>>()
     };
@@ -74,14 +73,9 @@ fn projection(front: &PlanDocument, across: Objective, up: Objective) -> Chart {
             up.row().axis.to_owned(),
             1.0,
             vec![
-                series("plan", Role::Point, 0, of(&mut all(), up), Vec::new()),
-                series(
-                    "best and chosen",
-                    Role::Named,
-                    1,
-                    of(&mut few(), up),
-                    named.iter().map(|(name, _)| name.clone()).collect(),
-                ),
+                Series::of("plan", Role::Point, 0, of(&mut all(), up)),
+                Series::of("best and chosen", Role::Named, 1, of(&mut few(), up))
+                    .named(named.iter().map(|(name, _)| name.clone()).collect()),
             ],
         )],
         height: 300,
@@ -99,13 +93,12 @@ fn convergence(front: &PlanDocument) -> Chart {
         panels: vec![Panel::of(
             "Hypervolume".to_owned(),
             1.0,
-            vec![Series {
-                name: "share of the final front's box".to_owned(),
-                role: Role::Measured,
-                x: 0,
-                y: steps.iter().map(|step| (step.hypervolume * 1e5).round() / 1e5).collect(),
-                names: Vec::new(),
-            }],
+            vec![Series::of(
+                "share of the final front's box",
+                Role::Measured,
+                0,
+                steps.iter().map(|step| (step.hypervolume * 1e5).round() / 1e5).collect(),
+            )],
         )],
         height: 300,
         size: Size::Half,

@@ -4,7 +4,7 @@ use crate::{
     plan::{Limit, SampledMotion},
     render::{
         kit::page::{
-            chart::{Chart, Panel, Role, Series, Size, hundredths, span},
+            chart::{Chart, Panel, Role, Series, Size, hundredths, millimetres, span},
             scene::{Scene, broadest_rad},
         },
         metric::on_paper,
@@ -31,7 +31,7 @@ fn joint_chart(joint: &str, k: usize, course: &Course) -> Chart {
     let kind = motion.kinds.get(k).copied().unwrap_or_default();
     let points: Vec<f64> = motion.key_points_rad[k].iter().map(|q| hundredths(on_paper(kind, *q))).collect();
     let names = (1..=points.len()).map(|point| point.to_string()).collect();
-    let key_points = Series { names, ..Series::of("key point", Role::Named, 1, points) };
+    let key_points = Series::of("key point", Role::Named, 1, points).named(names);
     let most = motion.speed_limit_rad_s[k];
     let [position, speed, name] = if kind == JointKind::Slides {
         ["Position (mm)", "Speed (mm/s)", "position"]
@@ -101,10 +101,6 @@ pub(super) fn path(motion: &SampledMotion, beside: &SampledMotion, tool: &str) -
         value: motion.tool_speed_m_s.iter().map(|speed| millimetres(*speed)).collect(),
         yaw: broadest_rad(&beside.tool_m),
     }
-}
-
-fn millimetres(m: f64) -> f64 {
-    (1e4 * m).round() / 10.0
 }
 
 fn shown(values: &[f64]) -> Vec<f64> {

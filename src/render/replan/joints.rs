@@ -55,8 +55,7 @@ pub(super) fn chart(course: &JointCourse) -> Chart {
     apart.push(lines.line("command", Role::Error, &moved));
     apart.extend(missed.as_deref().map(|missed| lines.line("expected", Role::Measured, missed)));
     let panel = |label: &str, dimension, share, series| {
-        let label = format!("{label} ({})", unit(dimension, course.kind));
-        Panel { label, series, share, range: None }
+        Panel::of(format!("{label} ({})", unit(dimension, course.kind)), share, series)
     };
     let ends = course.t_s.first().zip(course.t_s.last());
     Chart {

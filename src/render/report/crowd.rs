@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use maud::{Markup, html};
 
 use crate::{
+    math::whole,
     render::kit::page::Shows,
     replay::{Phase, Stretch},
 };
@@ -53,8 +54,7 @@ fn shares<'a>(stretches: impl Iterator<Item = &'a Stretch>, from_s: f64, each_s:
     for one in stretches {
         let [first, last] =
             [one.from_s, one.to_s].map(|s| ((s - from_s) / each_s).clamp(0.0, COLUMNS as f64));
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a column")]
-        let own = shares.iter_mut().enumerate().take(last.ceil() as usize).skip(first as usize);
+        let own = shares.iter_mut().enumerate().take(whole(last.ceil())).skip(whole(first));
         for (k, share) in own {
             *share += (last.min(k as f64 + 1.0) - first.max(k as f64)).max(0.0);
         }

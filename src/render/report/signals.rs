@@ -44,7 +44,7 @@ pub(super) fn add(chart: &mut Chart, report: &Report, pair: &Pair) {
 }
 
 fn panel(label: &str, series: Vec<Series>) -> Option<Panel> {
-    (!series.is_empty()).then(|| Panel { label: label.to_owned(), series, share: SHARE, range: None })
+    (!series.is_empty()).then(|| Panel::of(label, SHARE, series))
 }
 
 /// Puts coordinates into the chart, unless it has them, and gives their index.
@@ -103,12 +103,7 @@ pub(super) fn speed(
         series("planned speed", Role::Planned, x, shown(&planned)),
         series("measured speed", Role::Measured, x, shown(&measured)),
     ];
-    Some(Panel {
-        label: format!("Speed ({})", unit(Dimension::Speed, pair.kind)),
-        series,
-        share,
-        range: None,
-    })
+    Some(Panel::of(format!("Speed ({})", unit(Dimension::Speed, pair.kind)), share, series))
 }
 
 /// Those signals of a joint that the report holds, with what they are called and look like.

@@ -9,7 +9,7 @@ use crate::{
             Column, Table, clean, deg, mm,
             page::{
                 Plots, blocks, card,
-                chart::{Chart, Panel, Role, Series, Size, at, rounded, times},
+                chart::{Chart, Panel, Role, Series, Size, at, millimetres, rounded, times},
                 envelope::envelope,
                 scene::{Scene, broadest_rad, scene},
                 table,
@@ -65,30 +65,24 @@ pub(super) fn error_chart(found: &ToolReplay, path: &ToolPath) -> Chart {
     let shown =
         |values: &[f64], kind| at(values, &places).map(|value| rounded(on_paper(kind, value))).collect();
     let series = |name: &str, role, y| Series::of(name, role, 0, y);
-    let panel = |label: &str, share, series| Panel { label: label.to_owned(), series, share, range: None };
-    let angle = || {
-        panel(
-            "Angle (deg)",
-            0.35,
-            vec![series("orientation", Role::Before, shown(&path.orientation_rad, Turns))],
-        )
-    };
+    let mut panels = vec![Panel::of(
+        "Error (mm)",
+        if found.rms_orientation_rad.is_some() { 0.65 } else { 1.0 },
+        vec![
+            series("distance", Role::Error, shown(&path.error_m, Slides)),
+            series("behind along the path", Role::Measured, shown(&path.along_m, Slides)),
+        ],
+    )];
+    if found.rms_orientation_rad.is_some() {
+        let angle = series("orientation", Role::Before, shown(&path.orientation_rad, Turns));
+        panels.push(Panel::of("Angle (deg)", 0.35, vec![angle]));
+    }
     Chart {
         title: format!("Error at the tool (link {})", found.tool),
         note: format!("worst {} mm, rms {} mm", mm(found.worst.deviation.error_m), mm(found.rms_m)),
         x_label: "Time (s)".into(),
         xs: vec![times(&path.t_s, &places)],
-        panels: [panel(
-            "Error (mm)",
-            if found.rms_orientation_rad.is_some() { 0.65 } else { 1.0 },
-            vec![
-                series("distance", Role::Error, shown(&path.error_m, Slides)),
-                series("behind along the path", Role::Measured, shown(&path.along_m, Slides)),
-            ],
-        )]
-        .into_iter()
-        .chain(found.rms_orientation_rad.map(|_| angle()))
-        .collect(),
+        panels,
         group: Some("run"),
         height: 270,
         size: Size::Wide,
@@ -96,17 +90,12 @@ pub(super) fn error_chart(found: &ToolReplay, path: &ToolPath) -> Chart {
     }
 }
 
-/// Millimetres with one decimal, as numbers.
-fn tenths(m: f64) -> f64 {
-    (m * 1e4).round() / 10.0
-}
-
 fn path_scene(found: &ToolReplay, path: &ToolPath) -> Scene {
     let axis = |of: &[[f64; 3]], k: usize| of.iter().map(|place| place[k]).collect::<Vec<f64>>();
     let [x, y, z] = [0, 1, 2].map(|k| axis(&path.measured_m, k));
     let places = envelope(&path.segments, &[&path.error_m, &x, &y, &z], MOST[1]);
     let spot = |of: &[[f64; 3]]| {
-        let place = |place: &Option<usize>| place.map_or([f64::NAN; 3], |i| of[i].map(tenths));
+        let place = |place: &Option<usize>| place.map_or([f64::NAN; 3], |i| of[i].map(millimetres));
         places.iter().map(place).collect::<Vec<_>>()
     };
     Scene {
@@ -116,7 +105,7 @@ fn path_scene(found: &ToolReplay, path: &ToolPath) -> Scene {
         value_unit: "mm",
         planned: spot(&path.planned_m),
         measured: spot(&path.measured_m),
-        value: at(&path.error_m, &places).map(tenths).collect(),
+        value: at(&path.error_m, &places).map(millimetres).collect(),
         yaw: broadest_rad(&path.planned_m),
     }
 }

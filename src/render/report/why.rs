@@ -1,6 +1,7 @@
 //! Why starts come late, in words, a table and bars.
 
 use crate::{
+    math::whole,
     render::kit::{Block, Column, Id, Section, Sentence, Table, counted, ms},
     workflow::report::{LateStart, Part, Report, Why},
 };
@@ -172,8 +173,7 @@ fn bar(start: &LateStart, longest_s: f64) -> String {
     let mut bar = String::new();
     for (fill, .., part) in PARTS {
         sum_s += part(start).delay_s.max(0.0);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few characters")]
-        let end = (WIDE * (sum_s / longest_s).min(1.5)).round() as usize;
+        let end = whole((WIDE * (sum_s / longest_s).min(1.5)).round());
         let more = end.saturating_sub(bar.chars().count());
         bar.extend(std::iter::repeat_n(fill, more));
     }

@@ -1,7 +1,7 @@
 //! When a run passes the key points of its task, as far as its log tells.
 
 use super::Carried;
-use crate::task::Task;
+use crate::{math::whole, task::Task};
 
 /// A task and when its key points are reached and left.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,12 +60,7 @@ impl Schedule {
         if phase >= count {
             return last + phase - count;
         }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "between 0 and their number"
-        )]
-        let i = (phase as usize).min(self.knots_s.len() - 2);
+        let i = whole(phase).min(self.knots_s.len() - 2);
         self.knots_s[i] + (phase - i as f64) * (self.knots_s[i + 1] - self.knots_s[i])
     }
 

@@ -78,13 +78,6 @@ mod tests {
     use crate::workflow::compare::{Gates, Inputs, run};
 
     #[test]
-    fn the_committed_schema_is_that_of_the_comparison() {
-        crate::schema::is_committed::<Comparison>(
-            "compare.v2.schema.json", "hydrotrace comparison, version 2",
-        );
-    }
-
-    #[test]
     fn a_document_reads_back_as_it_was_written() {
         let logs = |name: &str| {
             vec![std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name)]

@@ -90,25 +90,12 @@ fn instants(a: &Pair, b: &Pair, offset_s: f64) -> impl Iterator<Item = Instant> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::JointKind;
+    use crate::series::{Track, align};
 
     /// A plan that moves by a radian around 4 s.
     fn plan(shift_s: f64, scale: f64) -> Pair {
-        let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
-        let planned: Vec<f64> = t_s.iter().map(|t| scale * (2.0 * (t - 4.0 - shift_s)).tanh()).collect();
-        Pair {
-            name: "a".into(),
-            kind: JointKind::Turns,
-            planned_velocity: None,
-            measured: planned.clone(),
-            planned,
-            segments: vec![0..300, 300..800],
-            planned_interval_s: 0.01,
-            planned_step: None,
-            matched: 800,
-            unmatched: 0,
-            t_s: t_s.into(),
-        }
+        let track = Track::sampled("a", 800, |t| scale * (2.0 * (t - 4.0 - shift_s)).tanh());
+        Pair { segments: vec![0..300, 300..800], ..align(&track, &track).unwrap() }
     }
 
     #[test]

@@ -22,15 +22,6 @@ pub struct ObserveFailure {
     pub source: LogError,
 }
 
-/// What a fit uses beside plan and measurement, as far as a log has it.
-const SIGNALS: [SignalRole; 5] = [
-    SignalRole::Command,
-    SignalRole::Valve,
-    SignalRole::CapPressure,
-    SignalRole::RodPressure,
-    SignalRole::SupplyPressure,
-];
-
 /// Reads one run, wherever its files are, in one pass; where a sensor stood while its joint moved, nothing was measured.
 ///
 /// # Errors
@@ -39,7 +30,7 @@ const SIGNALS: [SignalRole; 5] = [
 /// not there.
 pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, ObserveFailure> {
     let path = inputs.first().map(|input| input.name().to_owned()).unwrap_or_default();
-    let read = read.clone().wanting(&SIGNALS);
+    let read = read.clone().wanting(&SignalRole::OF_DRIVES);
     let recording = LogFiles::with(inputs, &read).and_then(|files| files.scan()?.read(&read));
     let recording = recording.and_then(of_joints);
     let mut recording = recording.map_err(|source| ObserveFailure { path, source })?;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{history::By, leveled::Leveled};
-use crate::math::{column_levels, row_weights, step_scatter};
+use crate::math::{column_levels, row_weights, step_scatter, whole};
 
 /// Machines that tell it, at least, at any time.
 const FEWEST_MACHINES: usize = 4;
@@ -59,12 +59,8 @@ impl Common {
     /// At the instants of a joint, in its unit; the nearest that is known where it is not. `None` where that is so too often.
     pub(super) fn at(&self, metric: By, joint: &Leveled) -> Option<Vec<f64>> {
         let last = self.levels.len() - 1;
-        let bin = |days: f64| {
-            let at = ((days - self.from_days) / self.step_days.max(f64::MIN_POSITIVE)).floor();
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-            let bin = at.clamp(0.0, last as f64) as usize;
-            bin
-        };
+        let bin =
+            |days: f64| whole((days - self.from_days) / self.step_days.max(f64::MIN_POSITIVE)).min(last);
         let known = |bin: &usize| self.levels[*bin].is_finite();
         let bins: Vec<usize> = joint.levels.iter().map(|level| bin(level.0)).collect();
         let enough = bins.iter().filter(|bin| known(bin)).count() as f64 >= KNOWN * bins.len() as f64;

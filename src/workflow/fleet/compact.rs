@@ -64,16 +64,3 @@ pub fn compact(root: &Path) -> Result<Compacted, FleetFailure> {
 fn count(root: &Path) -> Result<usize, FleetFailure> {
     Name::ALL.into_iter().map(|name| Ok(parts(root, name)?.len())).sum()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::schema::is_written_and_read;
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let (format, program) = (FORMAT.to_owned(), PROGRAM.to_owned());
-        let document = Compacted { format, program, runs: 3, files_before: 9, files_after: 4 };
-        is_written_and_read(&document, "fleet-compact.v1.schema.json", "hydrotrace fleet compact, version 1");
-    }
-}

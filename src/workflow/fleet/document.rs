@@ -94,17 +94,3 @@ impl Scanned {
         self.failures.extend(failures.inspect(|_| self.remarks.add(Code::UnreadableLog, 1, message)));
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::schema::is_written_and_read;
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let mut document = Scanned::new(Path::new("fleet"), 2);
-        document.failures.push(Failure { log: "/logs/a.mcap".into(), error: "the file is empty".into() });
-        document.machines.push("M01".into());
-        is_written_and_read(&document, "fleet-scan.v1.schema.json", "hydrotrace fleet scan, version 1");
-    }
-}

@@ -140,7 +140,6 @@ mod tests {
         super::{history::Event, run::Run},
         *,
     };
-    use crate::schema::is_written_and_read;
 
     fn joint_trend(by: By, runs: &[Run], values: &Values, scatters: (&str, &Scatters)) -> Option<JointTrend> {
         Leveled::of(by, runs, values, scatters)?.trend()
@@ -230,23 +229,5 @@ mod tests {
         let mut drifts = vec![joint_trend(By::Delay, &runs, &values, ("boom", &Scatters::new())).unwrap()];
         judge(&mut drifts);
         assert!(drifts[0].q_value < 0.01 && !drifts[0].found, "of no concern: {drifts:?}");
-    }
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let (runs, values) = values(1.0);
-        let document = Drift {
-            format: FORMAT.into(),
-            program: PROGRAM.into(),
-            runs: 10,
-            machines: 1,
-            false_discovery_rate: MOST_FALSE,
-            trends: vec![joint_trend(By::Delay, &runs, &values, ("boom", &Scatters::new())).unwrap()],
-            maps: Vec::new(),
-            too_few: 0,
-            fewest_runs: FEWEST_RUNS,
-            remarks: Remarks::default(),
-        };
-        is_written_and_read(&document, "fleet-drift.v1.schema.json", "hydrotrace fleet drift, version 1");
     }
 }

@@ -263,10 +263,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
-    use crate::{
-        schema::is_written_and_read,
-        workflow::fleet::{history::Event, run::Run},
-    };
+    use crate::workflow::fleet::{history::Event, run::Run};
 
     /// Six machines over ten days; all get better by 1 on day five, the first one by 4.
     fn history() -> History {
@@ -347,27 +344,5 @@ mod tests {
                 assert!(found.change.abs() < 0.2 && found.p_value > 0.01, "{found:?}");
             }
         }
-    }
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let history = history();
-        let ((axis, metric), values) = history.values.iter().next().unwrap();
-        let document = Effect {
-            format: FORMAT.into(),
-            program: PROGRAM.into(),
-            machine: "M0".into(),
-            at: date(5.0).unwrap(),
-            what: Some("valve replaced".into()),
-            between: Vec::new(),
-            together: Vec::new(),
-            runs_before: 5,
-            runs_after: 5,
-            false_discovery_rate: MOST_FALSE,
-            effects: joint_effect(&history, axis, *metric, values, window()).into_iter().collect(),
-            too_few: 0,
-            remarks: Remarks::default(),
-        };
-        is_written_and_read(&document, "fleet-effect.v1.schema.json", "hydrotrace fleet effect, version 1");
     }
 }

@@ -127,12 +127,14 @@ fn changes(trends: &[JointTrend], own: &JointTrend) -> Vec<Change> {
     own.course.iter().flat_map(|course| &course.changes).filter(own_change).cloned().collect()
 }
 
+/// What trends are compared with one another.
+fn kind(trend: &JointTrend) -> (By, bool, &str) {
+    (trend.metric, trend.direction.is_some(), &trend.unit)
+}
+
 /// By how much the joints of other machines changed between two days: the middle, and the spread as a robust standard deviation.
 fn elsewhere_between(trends: &[JointTrend], own: &JointTrend, days: [f64; 2]) -> Option<(f64, f64)> {
-    let alike = |other: &&JointTrend| {
-        let key = |trend: &JointTrend| (trend.metric, trend.direction.is_some(), trend.unit.clone());
-        other.machine != own.machine && key(other) == key(own)
-    };
+    let alike = |other: &&JointTrend| other.machine != own.machine && kind(other) == kind(own);
     let share = |other: &JointTrend| if own.metric == By::Peak { own.level / other.level } else { 1.0 };
     let change = |other: &JointTrend| Some(share(other) * slope_over(other, days)? * (days[1] - days[0]));
     let changes: Vec<f64> =
@@ -154,8 +156,7 @@ fn elsewhere(trends: &[JointTrend], own: &JointTrend, at_days: f64) -> Option<(f
         enough.then(|| share(other) * (mean(&after) - mean(&before))).filter(|change| change.is_finite())
     };
     let alike = |other: &&JointTrend| {
-        let key = |trend: &JointTrend| (trend.metric, trend.direction, trend.unit.clone());
-        other.machine != own.machine && key(other) == key(own)
+        other.machine != own.machine && kind(other) == kind(own) && other.direction == own.direction
     };
     // The same joint elsewhere tells more: a cold day makes more of a fast joint.
     let same = |other: &&JointTrend| alike(other) && other.joint == own.joint;
@@ -178,10 +179,7 @@ fn stand_out(trends: &mut [JointTrend]) -> Vec<bool> {
         let span = span_days(own).map(f64::to_bits);
         let key = (own.metric, own.direction.is_some(), own.unit.clone(), span);
         *known.entry(key).or_insert_with(|| {
-            let alike = |other: &&JointTrend| {
-                let key = |trend: &JointTrend| (trend.metric, trend.direction.is_some(), trend.unit.clone());
-                key(other) == key(own)
-            };
+            let alike = |other: &&JointTrend| kind(other) == kind(own);
             let slope = |other: &JointTrend| Some(slope_over(other, span_days(own))? / scale(other));
             let slopes: Vec<f64> =
                 trends.iter().filter(alike).filter_map(slope).filter(|s| s.is_finite()).collect();

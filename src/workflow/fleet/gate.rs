@@ -139,7 +139,6 @@ fn judged(gate: &Gate, found: &Drift, empty_is_kept: bool) -> GateResult {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::is_written_and_read;
 
     fn found(slopes: &[(f64, bool)]) -> Drift {
         let trend = |(slope, found): &(f64, bool)| JointTrend {
@@ -188,19 +187,5 @@ mod tests {
         // Ten runs prove nothing among so many trends.
         let many = Drift { fewest_runs: 11, ..found(&[(0.03, false)]) };
         assert!(!judged(&limit(), &many, false).kept && is_judged(&found(&[(0.03, true)]).trends[0], &many));
-    }
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let document = Gated {
-            format: FORMAT.into(),
-            program: PROGRAM.into(),
-            gates: vec![judged(&limit(), &found(&[(0.02, true)]), false)],
-            gates_kept: false,
-            too_few: 3,
-            fewest_runs: 5,
-            remarks: Remarks::default(),
-        };
-        is_written_and_read(&document, "fleet-gate.v1.schema.json", "hydrotrace fleet gate, version 1");
     }
 }

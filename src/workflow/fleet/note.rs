@@ -160,22 +160,3 @@ impl Notes {
         Self { format: FORMAT.to_owned(), program: PROGRAM.to_owned(), interventions }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::schema::is_written_and_read;
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let note = |joint: Option<&str>| Note {
-            at_us: 1_772_755_200_000_000,
-            machine: "M07".into(),
-            joint: joint.map(str::to_owned),
-            what: "valve replaced".into(),
-        };
-        let document = Notes::of(&[note(None), note(Some("boom"))]);
-        assert_eq!(document.interventions[0].at, "2026-03-06T00:00:00Z");
-        is_written_and_read(&document, "fleet-notes.v1.schema.json", "hydrotrace fleet note, version 1");
-    }
-}

@@ -134,37 +134,3 @@ pub fn worst(root: &Path, filter: &Filter, by: By) -> Result<Worst, FleetFailure
         remarks: history.remarks,
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::schema::is_written_and_read;
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let joint = WorstJoint {
-            machine: "M0".into(),
-            joint: "boom".into(),
-            unit: "rad".into(),
-            median: 0.1,
-            p95: 0.2,
-            largest: 0.3,
-            log: "/logs/a.mcap".into(),
-            at: date(20_000.0),
-            above_fleet: Some(0.5),
-            starts: 10,
-            runs: 2,
-        };
-        let document = Worst {
-            format: FORMAT.into(),
-            program: PROGRAM.into(),
-            by: By::Peak,
-            runs: 2,
-            machines: 1,
-            map: None,
-            joints: vec![joint],
-            remarks: Remarks::default(),
-        };
-        is_written_and_read(&document, "fleet-worst.v1.schema.json", "hydrotrace fleet worst, version 1");
-    }
-}

@@ -57,20 +57,3 @@ impl InfoDocument {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{
-        log::{ReadOptions, survey},
-        schema::is_written_and_read,
-    };
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let log = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs/task-1-run.mcap");
-        let document = InfoDocument::of(&survey(&[log], &ReadOptions::default()).unwrap());
-        assert!(!document.joints.is_empty());
-        is_written_and_read(&document, "info.v1.schema.json", "hydrotrace info, version 1");
-    }
-}

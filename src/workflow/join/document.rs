@@ -54,33 +54,3 @@ pub struct Joined {
     #[serde(skip)]
     pub kinds: Vec<JointKind>,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{document::PROGRAM, schema::is_written_and_read};
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let document = Joined {
-            format: FORMAT.to_owned(),
-            program: PROGRAM.to_owned(),
-            sent: Some("/sent:positions".into()),
-            sent_is_command: true,
-            keeps_plan: false,
-            at_s: 1.5,
-            rms_difference_rad: Some(0.001),
-            other_places: Some(1),
-            duration_s: 20.0,
-            rest_before_s: 1.0,
-            rest_after_s: 3.0,
-            joints: 4,
-            messages: 1000,
-            files: vec!["task.toml".into()],
-            remarks: Remarks::default(),
-            located: None,
-            kinds: Vec::new(),
-        };
-        is_written_and_read(&document, "join.v1.schema.json", "hydrotrace join, version 1");
-    }
-}

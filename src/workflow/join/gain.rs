@@ -65,11 +65,7 @@ mod tests {
         let plan = |t: f64| step((t - 1.0) / 3.0) - 0.5 * step((t - 6.0) / 3.0);
         let bump =
             |t: f64| 0.02 * (-((t - 1.3) / 0.2).powi(2)).exp() - 0.015 * (-((t - 6.3) / 0.2).powi(2)).exp();
-        let series = |q: &dyn Fn(f64) -> f64| {
-            let t_s: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.01).collect();
-            let q = t_s.iter().map(|t| q(*t)).collect();
-            Series { tracks: vec![Track::new("swing", t_s, q, &[]).unwrap()] }
-        };
+        let series = |q: &dyn Fn(f64) -> f64| Series::sampled("swing", 1000, q);
         let command = |share: f64| move |t: f64| plan(t) + share * bump(t);
         let of = |sent: &dyn Fn(f64) -> f64, at_s: f64| {
             other_share(&series(&plan), &series(&command(1.0)), &series(sent), at_s)

@@ -61,27 +61,3 @@ pub fn gather(inputs: &Inputs) -> Result<Gathered, JoinFailure> {
         remarks: run.remarks,
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::schema::is_written_and_read;
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let document = Gathered {
-            format: FORMAT.to_owned(),
-            program: PROGRAM.to_owned(),
-            files: 3,
-            messages: 1000,
-            joints: 4,
-            duration_s: 20.0,
-            remarks: Remarks::default(),
-        };
-        is_written_and_read(
-            &document,
-            "gathered.v1.schema.json",
-            "hydrotrace join without a plan, version 1",
-        );
-    }
-}

@@ -50,24 +50,3 @@ impl Recorded {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::schema::is_written_and_read;
-
-    #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
-        let document = Recorded {
-            format: FORMAT.to_owned(),
-            program: PROGRAM.to_owned(),
-            logs: vec!["run.mcap".into(), "run-2.mcap".into()],
-            lines: 1001,
-            rows: 1000,
-            joints: vec!["boom".to_owned()],
-            columns: vec!["boom_act_mm: measured position of boom, mm".to_owned()],
-            remarks: Remarks::default(),
-        };
-        is_written_and_read(&document, "record.v1.schema.json", "hydrotrace record, version 1");
-    }
-}

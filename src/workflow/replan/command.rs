@@ -8,7 +8,7 @@ use crate::{
         Fit, JointFit, JointStep, Learning, Learnt, Oscillation, Room, SHARE, STEP_S, Step, Stop, Trial,
         learn, predict,
     },
-    math::{State, range},
+    math::{State, range, whole},
     plan::{BETWEEN, Interpolation, Limit, Margin, Setup, SpeedRoom},
     series::{JointKind, Series, Track, align},
     units::DEGREE_RAD,
@@ -269,9 +269,7 @@ fn checked(setup: &Setup, sent: &[Vec<State>], points_hz: f64) -> Vec<(Checked, 
 
 /// Samples from one point of a trajectory to the next.
 pub(super) fn stride(points_hz: f64) -> usize {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small number")]
-    let found = (1.0 / (points_hz * STEP_S)).round() as usize;
-    found.max(1)
+    whole((1.0 / (points_hz * STEP_S)).round()).max(1)
 }
 
 /// Of each limit the margin that is used most.

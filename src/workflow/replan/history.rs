@@ -10,7 +10,7 @@ use crate::{
     log::Recording,
     math::quantile,
     replay::{Rules, replay},
-    series::{JointKind, Series, Track, align, bridged, moves_beside_s, moving_s},
+    series::{JointKind, Series, Track, bridged, moves_beside_s, moving_s},
     workflow::{
         carried::{Carried, Promise, rest::PLAN_LEAD_S},
         same_plan::{
@@ -136,17 +136,11 @@ impl History {
             let unsent = plan.tracks.iter().filter(|track| sent.track(track.name()).is_none());
             let unsent: Vec<Track> = unsent.cloned().collect();
             sent.tracks.extend(unsent);
-            let pairs: Vec<_> = (recording.measured.tracks.iter())
-                .filter_map(|track| align(recording.planned.track(track.name())?, track))
-                .collect();
-            let found = replay(&pairs, rules);
-            let count = found.peaks_rad().count() as f64;
-            let sum: f64 = found.peaks_rad().sum();
             history.runs.push(PastRun {
                 log: log.clone(),
                 path: paths[place].clone(),
                 corrected: !within(&sent, plan, SAME_RAD),
-                mean_peak_rad: (count > 0.0).then(|| sum / count),
+                mean_peak_rad: replay(&recording.pairs(), rules).mean_peak_rad(),
                 rms_error_rad: 0.0,
                 p95_error_rad: 0.0,
                 after_s: (rest_s + rests_s.min(seen_s)).max(0.0),
@@ -261,16 +255,14 @@ impl History {
 
 /// Largest distance of what was sent from the plan, rad.
 fn farthest(sent: &Series, plan: &Series) -> f64 {
-    let of = |track: &Track| {
-        let planned = plan.track(track.name())?;
-        let apart = track
-            .t_s()
-            .iter()
-            .zip(track.position())
-            .map(|(t_s, q)| (q - planned.held_at(*t_s).position).abs());
-        Some(apart.fold(0.0, f64::max))
-    };
+    let of = |track: &Track| Some(apart_rad(track, plan.track(track.name())?));
     sent.tracks.iter().filter_map(of).fold(0.0, f64::max)
+}
+
+/// The same of a joint.
+pub(super) fn apart_rad(sent: &Track, plan: &Track) -> f64 {
+    let apart = |(t_s, position): (&f64, &f64)| (plan.held_at(*t_s).position - position).abs();
+    sent.t_s().iter().zip(sent.position()).map(apart).fold(0.0, f64::max)
 }
 
 /// How long a log holds the end of a plan after an instant, [`AFTER_S`] at most, s: then the arm may do something else.
@@ -335,9 +327,7 @@ pub(super) mod tests {
 
     /// A joint that goes on at a speed for a second.
     pub(in crate::workflow::replan) fn sent(by: f64) -> Series {
-        let t_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
-        let q = t_s.iter().map(|t| by * t).collect();
-        Series { tracks: vec![Track::new("J", t_s, q, &[]).unwrap()] }
+        Series::sampled("J", 100, |t| by * t)
     }
 
     pub(in crate::workflow::replan) fn history(peaks: &[f64]) -> History {

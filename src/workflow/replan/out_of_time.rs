@@ -243,11 +243,7 @@ mod tests {
             x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
         };
         let plan = |size: f64, t: f64| size * (step((t - 2.0) / 4.0) - 0.6 * step((t - 9.0) / 5.0));
-        let t_s: Vec<f64> = (0..1800).map(|k| f64::from(k) * 0.01).collect();
-        let track = |name: &str, size: f64| {
-            let q = t_s.iter().map(|&t| plan(size, at_s(t))).collect();
-            Track::new(name, t_s.clone(), q, &[]).unwrap()
-        };
+        let track = |name: &str, size: f64| Track::sampled(name, 1800, |t| plan(size, at_s(t)));
         Series { tracks: vec![track("swing", 1.0), track("boom", -0.5)] }
     }
 

@@ -14,7 +14,7 @@ use crate::{
     plan::{PlanEvaluation, Timing},
     remark::{Code, Remarks},
     replay::{Rules, replay},
-    series::{Series, align, moving_s},
+    series::{Series, moving_s},
     task::{Ceilings, Objective, Objectives},
     workflow::{
         carried::{
@@ -50,16 +50,11 @@ pub struct Before {
 
 impl Before {
     pub(super) fn of(recording: &Recording, last: &Last, predicted: Predicted, rules: &Rules) -> Self {
-        let pair =
-            |measured: &crate::series::Track| align(recording.planned.track(measured.name())?, measured);
-        let pairs: Vec<_> = recording.measured.tracks.iter().filter_map(pair).collect();
-        let found = replay(&pairs, rules);
-        let peaks = || found.peaks_rad();
-        let count = peaks().count();
+        let found = replay(&recording.pairs(), rules);
         Self {
-            measured_transitions: count,
-            measured_mean_peak_rad: (count > 0).then(|| peaks().sum::<f64>() / count as f64),
-            measured_worst_peak_rad: peaks().reduce(f64::max),
+            measured_transitions: found.transitions.len(),
+            measured_mean_peak_rad: found.mean_peak_rad(),
+            measured_worst_peak_rad: found.peaks_rad().reduce(f64::max),
             duration_s: last.motion().map_or(last.duration_s, |motion| motion.duration_s()),
             predicted,
         }

@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{history::SAME, warp::unexplained};
+use super::{
+    history::{SAME, apart_rad},
+    warp::unexplained,
+};
 use crate::{
     fit::{Fit, FitError, Stop, predict},
     replay::{Kind, Rules, replay},
@@ -125,7 +128,7 @@ pub fn promised(
     let left = |name: &str| {
         let before = run.and_then(|(before, ..)| before.track(name)).zip(sent.track(name));
         let changed = before.zip(plan.track(name)).map(|((before, sent), plan)| {
-            let (changed_rad, corrected_rad) = (changed_rad(before, sent), changed_rad(plan, sent));
+            let (changed_rad, corrected_rad) = (apart_rad(sent, before), apart_rad(sent, plan));
             if changed_rad < SAME_RAD.max(SAME * corrected_rad) { 0.0 } else { changed_rad }
         });
         let times = run.map_or(1, |(.., times)| times);
@@ -160,11 +163,6 @@ pub fn promised(
 /// Commands that differ by less are the same, rad, or by [`SAME`] of what they correct: a command that is kept is fitted to its plan
 /// anew.
 const SAME_RAD: f64 = 2e-4;
-
-fn changed_rad(before: &Track, sent: &Track) -> f64 {
-    let apart = |(t_s, position): (&f64, &f64)| (before.held_at(*t_s).position - position).abs();
-    sent.t_s().iter().zip(sent.position()).map(apart).fold(0.0, f64::max)
-}
 
 /// What came before, and what the model says that changes but where the joint is held.
 fn changed(came: &Track, modelled_before: &Track, modelled: Track, held: impl Fn(f64) -> bool) -> Track {

@@ -86,10 +86,7 @@ mod tests {
             x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
         };
         let plan = |at_s: &dyn Fn(f64) -> f64, boom: f64| {
-            let t_s: Vec<f64> = (0..5000).map(|k| f64::from(k) * 0.01).collect();
-            let track = |name: &str, of: &dyn Fn(f64) -> f64| {
-                Track::new(name, t_s.clone(), t_s.iter().map(|t| of(at_s(*t))).collect(), &[]).unwrap()
-            };
+            let track = |name: &str, of: &dyn Fn(f64) -> f64| Track::sampled(name, 5000, |t| of(at_s(t)));
             let swing = track("swing", &|t| step((t - 4.0) / 8.0) - 0.6 * step((t - 20.0) / 6.0));
             Series { tracks: vec![swing, track("boom", &|t| boom * step((t - 6.0) / 9.0))] }
         };

@@ -4,7 +4,7 @@ use crate::{
     fit::{Character, Oscillation},
     log::Recording,
     replay::{Rules, replay},
-    series::{JointKind, align},
+    series::JointKind,
 };
 
 /// Share of a joint's RMS error from which on the noise of its sensor hides how it answers.
@@ -38,10 +38,7 @@ pub enum Unclear {
 impl Unclear {
     /// Of the newest of so many logs.
     pub(super) fn of(logs: usize, newest: &Recording, rules: &Rules) -> Self {
-        let tracks = newest.measured.tracks.iter();
-        let pairs: Vec<_> =
-            tracks.filter_map(|track| align(newest.planned.track(track.name())?, track)).collect();
-        let joints = replay(&pairs, rules).joints;
+        let joints = replay(&newest.pairs(), rules).joints;
         let both = joints.iter().map(|joint| (joint.noise.sigma, joint.tracking_error.rms, joint.kind));
         let least = both.min_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
         let hunts = newest.measured.tracks.iter().find_map(|track| {

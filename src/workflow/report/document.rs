@@ -107,11 +107,6 @@ mod tests {
         workflow::report::{Gates, Inputs, run},
     };
 
-    #[test]
-    fn the_committed_schema_is_that_of_the_report() {
-        crate::schema::is_committed::<Document>("report.v2.schema.json", "hydrotrace report, version 2");
-    }
-
     fn document() -> Document {
         let log = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs/gaps.mcap");
         let gates = crate::replay::limits()

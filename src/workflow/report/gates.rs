@@ -140,7 +140,10 @@ fn worst(gate: &Gate, found: Vec<Found<'_>>, empty_is_kept: bool) -> GateResult 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::replay::{Rules, replay};
+    use crate::{
+        replay::{Rules, replay},
+        series::{Track, align},
+    };
 
     fn gate(key: &str, value: f64) -> Gate {
         Gate { limit: Row::find(key).unwrap(), kind: JointKind::Turns, value }
@@ -155,24 +158,11 @@ mod tests {
 
     /// A joint that follows 12 degrees in 3 s from 4 s on, having crept before, or does not.
     fn replayed(follows: bool) -> Replay {
-        let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
         let ramp = |t: f64| 0.07 * (t - 4.0).clamp(0.0, 3.0);
         let creep = |t: f64| 0.005 * (t - 1.0).clamp(0.0, 3.0);
-        let position = |of: &dyn Fn(f64) -> f64| t_s.iter().map(|t| of(*t)).collect::<Vec<f64>>();
-        let pair = Pair {
-            name: "a".into(),
-            kind: JointKind::Turns,
-            planned: position(&ramp),
-            planned_velocity: None,
-            measured: position(&|t| if follows { creep(t) + ramp(t) } else { 0.0 }),
-            segments: std::iter::once(0..t_s.len()).collect(),
-            planned_interval_s: 0.01,
-            planned_step: None,
-            matched: t_s.len(),
-            unmatched: 0,
-            t_s: t_s.into(),
-        };
-        replay(&[pair], &Rules::default())
+        let came = |t: f64| if follows { creep(t) + ramp(t) } else { 0.0 };
+        let pair = align(&Track::sampled("a", 1000, ramp), &Track::sampled("a", 1000, came));
+        replay(&[pair.unwrap()], &Rules::default())
     }
 
     #[test]

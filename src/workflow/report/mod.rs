@@ -67,15 +67,6 @@ pub struct Inputs {
     pub stretches_s: BTreeMap<String, [f64; 2]>,
 }
 
-/// Beside plan and measurement, what plots show.
-const PLOTTED: [SignalRole; 5] = [
-    SignalRole::Command,
-    SignalRole::Valve,
-    SignalRole::CapPressure,
-    SignalRole::RodPressure,
-    SignalRole::SupplyPressure,
-];
-
 /// Analyses one run.
 ///
 /// # Errors
@@ -103,7 +94,7 @@ impl Inputs {
             let failed = |source| ReportFailure::Read { path: path.clone(), source };
             read.description = Some(input_file::read_to_string(path).map_err(failed)?);
         }
-        let plotted: &[SignalRole] = if self.with_signals { &PLOTTED } else { &[] };
+        let plotted: &[SignalRole] = if self.with_signals { &SignalRole::OF_DRIVES } else { &[] };
         Ok(read.wanting(self.delay_model.signals()).wanting(plotted))
     }
 }

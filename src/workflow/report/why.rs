@@ -7,10 +7,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    fit::{Fit, FitError, JointFit, Model, Observation, fit, predict},
+    fit::{Fit, FitError, JointFit, Model, fit, predict},
     log::{Recording, SignalRole},
     replay::{Replay, Rules, Transition, replay},
     series::{Pair, Series, Track, align, local_quadratic},
+    workflow::fit::observation,
 };
 
 /// The model by which a delay is explained.
@@ -105,14 +106,9 @@ impl DelayModel {
         {
             return Some(Err(format!("a fit to {span_s:.0} s takes a while; `report --why` makes it")));
         }
-        let sent = recording.command.as_ref().map_or(&recording.planned, |command| &command.series);
-        let (plan, sent) = (recording.planned.clone(), sent.clone());
-        let fit = if let Self::Known(fit) = self {
-            Ok(Fit::clone(fit))
-        } else {
-            let valve = recording.signals.get(&SignalRole::Valve).map_or(&[][..], Vec::as_slice);
-            fit(&[Observation { sent: &sent, measured: &recording.measured, valve }])
-        };
+        let observed = observation(recording);
+        let (plan, sent) = (recording.planned.clone(), observed.sent.clone());
+        let fit = if let Self::Known(fit) = self { Ok(Fit::clone(fit)) } else { fit(&[observed]) };
         Some(fit.map(|fit| Ready { fit, plan, sent }).map_err(|error| error.to_string()))
     }
 }

@@ -65,14 +65,8 @@ pub enum SimulateFailure {
 pub struct Run {
     /// What came of it.
     pub outputs: Outputs,
-    /// What the plan's log carries, with when its times count from in this run.
-    pub carried: Carried,
-    /// Whether a command was sent that is not the plan.
-    pub commanded: bool,
-    /// The arm that ran it.
-    pub arm: Arm,
-    /// Doubts about the plan's log.
-    pub remarks: Remarks,
+    /// What was run.
+    pub prepared: Prepared,
 }
 
 impl Run {
@@ -82,7 +76,8 @@ impl Run {
     ///
     /// [`WriteError`] for joint names that no log can hold.
     pub fn log(&self) -> Result<Vec<u8>, WriteError> {
-        self.outputs.log(&self.carried, Some(&self.arm.chain), Content::Everything, WriteOptions::default())
+        let Prepared { carried, arm, .. } = &self.prepared;
+        self.outputs.log(carried, Some(&arm.chain), Content::Everything, WriteOptions::default())
     }
 }
 
@@ -118,8 +113,7 @@ impl Prepared {
     ///
     /// [`SimulateFailure::Plant`].
     pub fn run(self) -> Result<Run, SimulateFailure> {
-        let Self { inputs, carried, commanded, arm, remarks } = self;
-        Ok(Run { outputs: run(&inputs)?, carried, commanded, arm, remarks })
+        Ok(Run { outputs: run(&self.inputs)?, prepared: self })
     }
 }
 

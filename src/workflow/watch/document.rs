@@ -188,10 +188,9 @@ pub(super) fn file_name(log: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::is_written_and_read;
 
     #[test]
-    fn the_committed_schema_is_that_of_the_document_and_what_is_written_is_read_back() {
+    fn what_is_written_is_read_back() {
         let text = str::to_owned;
         let log = Log {
             uri: text("/logs/M07/run.mcap"),
@@ -202,7 +201,8 @@ mod tests {
             tries: 1,
         };
         let document = Run::failed(&log, "b", "the file is empty");
-        is_written_and_read(&document, "watch.v1.schema.json", "hydrotrace watch, version 1");
+        let read: Run = serde_json::from_str(&serde_json::to_string(&document).unwrap()).unwrap();
+        assert_eq!(read, document);
         assert_eq!(document.name(), "run.mcap");
     }
 

@@ -34,6 +34,7 @@ fn a_header_says_lengths_plans_and_measurements_in_many_ways() {
         let (code, text, error) = said(&hydrotrace(folder.path(), &import));
         assert!(code == 0 || code == 3, "{header}: {error}");
         let read: Value = serde_json::from_str(&text).unwrap();
+        crate::support::hold_to_schema(&read, "import.v1");
         let columns = read["understood"]["columns"].as_array().unwrap();
         let found: Vec<_> =
             columns.iter().map(|c| (c["becomes"].as_str().unwrap(), c["joint"].as_str().unwrap())).collect();

@@ -285,6 +285,7 @@ fn what_is_noted_is_asked_for_by_its_effect_and_stays() {
     clean(folder.path(), "fleet note data --machine M02 --at 2026-03-03 oil");
     let notes = json(folder.path(), "fleet note data");
     hold_to_schema(&notes, "fleet-notes.v1");
+    assert_eq!(notes["interventions"][0]["at"], "2026-03-03T00:00:00Z");
     let what =
         |k: usize| (notes["interventions"][k]["machine"].clone(), notes["interventions"][k]["what"].clone());
     assert_eq!([what(0), what(1)], [("M02".into(), "oil".into()), ("M01".into(), "repair".into())]);

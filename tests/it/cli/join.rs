@@ -16,7 +16,7 @@ use hydrotrace::{
 };
 use serde_json::Value;
 
-use crate::support::{clean as done, run_line as hydrotrace, sample, stderr};
+use crate::support::{clean as done, hold_to_schema, run_line as hydrotrace, sample, stderr};
 
 fn json(folder: &Path, line: &str) -> Value {
     serde_json::from_str(&done(folder, &format!("{line} --json"))).unwrap()
@@ -127,6 +127,7 @@ fn a_joined_log_reports_fits_and_compares_as_one_that_always_had_its_plan() {
     field(at, "field.mcap", &[LATER_S], 1.0);
     let next = RUNS.path().join("next.mcap");
     let said = json(at, &format!("join field.mcap --plan {} -o run-2.mcap", next.display()));
+    hold_to_schema(&said, "join.v1");
     assert_eq!(said["sent_is_command"], true);
     // The plan's log starts where the machine has stood for two seconds.
     assert!((said["at_s"].as_f64().unwrap() - (LATER_S + 2.0)).abs() < 2e-3, "{said}");

@@ -2,7 +2,7 @@
 
 use std::{fmt::Write as _, fs};
 
-use crate::support::{clean, json, run_line, said, scratch};
+use crate::support::{clean, hold_to_schema, json, run_line, said, scratch};
 
 /// Degrees of a plan that moves twice, rests between, and ends elsewhere.
 fn plan_deg(t_s: f64) -> f64 {
@@ -36,7 +36,8 @@ fn the_parts_of_a_run_become_one_log_and_no_command_is_made_of_a_part() {
         fs::write(at.join("part.csv"), table(rows, &both)).unwrap();
         clean(at, &format!("import part.csv -o {name}.mcap"));
     }
-    clean(at, "join run.mcap run-2.mcap -o whole.mcap");
+    let gathered = clean(at, "join run.mcap run-2.mcap -o whole.mcap --json");
+    hold_to_schema(&serde_json::from_str(&gathered).unwrap(), "gathered.v1");
     let starts = |line: &str| json(at, line)["transitions"].as_array().unwrap().len();
     assert_eq!((starts("report run.mcap run-2.mcap"), starts("report whole.mcap")), (2, 2));
     // Cut in motion they are no runs; cut at rest they may be.

@@ -18,6 +18,7 @@ fn rows(range: std::ops::Range<u32>, from_s: f64) -> String {
 
 fn messages(folder: &Path, log: &str) -> u64 {
     let found = json(folder, &format!("info {log}"));
+    crate::support::hold_to_schema(&found, "info.v1");
     found["topics"].as_array().unwrap().iter().filter_map(|topic| topic["messages"].as_u64()).max().unwrap()
 }
 

@@ -177,6 +177,7 @@ fn what_was_doubtful_when_a_log_was_recovered_stays_so() {
     let (mut kept, mut lost) = (0, 0);
     for at in (2000..sound.len() / 2).step_by(1499) {
         let Some(document) = damaged(at) else { continue };
+        hold_to_schema(&document, "recover.v1");
         let [messages, doubtful, dropped] =
             ["messages", "doubtful_messages", "dropped_blocks"].map(|key| document[key].as_u64().unwrap());
         assert!(messages > 0 || dropped > 0, "byte {at}: {document}");

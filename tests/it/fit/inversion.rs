@@ -1,10 +1,11 @@
 //! Commands made from fits, on the machines that the fits are of.
 
-use hydrotrace::plant::{Plant, Variation};
+use hydrotrace::plant::Plant;
 
 use crate::support::{
     compensation::{PRESETS, changed, check, learnt, tried},
     machine::task,
+    variation::Variation,
 };
 
 #[test]

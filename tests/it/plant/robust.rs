@@ -2,12 +2,15 @@
 
 use hydrotrace::{
     arm::Arm,
-    plant::{Parameters, PayloadChange, Plant, Truth, Variation, simulate},
+    plant::{Parameters, PayloadChange, Plant, Truth, simulate},
     series::Series,
     units::DEGREE_RAD,
 };
 
-use crate::support::machine::{POSE_DEG, command, plant};
+use crate::support::{
+    machine::{POSE_DEG, command, plant},
+    variation::Variation,
+};
 
 fn pose_rad() -> Vec<f64> {
     POSE_DEG.iter().map(|q| q * DEGREE_RAD).collect()

@@ -3,13 +3,16 @@
 use hydrotrace::{
     arm::Arm,
     fit::{Learning, Trial, learn},
-    plant::{Parameters, Plant, Variation},
+    plant::{Parameters, Plant},
     replay::{Rules, replay},
     series::{Pair, Series, align, local_quadratic},
     units::DEGREE_RAD,
 };
 
-use super::machine::{Job, fitted, run};
+use super::{
+    machine::{Job, fitted, run},
+    variation::Variation,
+};
 
 /// Errors of a run, degrees and degrees per square second.
 #[derive(Debug, Clone, Copy, Default)]

@@ -8,6 +8,7 @@ pub(crate) mod machine;
 pub(crate) mod recovery;
 #[cfg(feature = "cloud")]
 pub(crate) mod store;
+pub(crate) mod variation;
 pub(crate) mod why;
 
 use std::{

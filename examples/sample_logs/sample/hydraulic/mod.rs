@@ -126,7 +126,7 @@ fn task_run(
 ) -> Result<PlantLog, Box<dyn Error>> {
     let seed = prepared.inputs.seed;
     let run = prepared.run()?;
-    written(options, title, seed, run.outputs, &run.carried, content)
+    written(options, title, seed, run.outputs, &run.prepared.carried, content)
 }
 
 fn identification(options: &WriteOptions) -> Result<PlantLog, Box<dyn Error>> {

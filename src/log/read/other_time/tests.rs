@@ -8,11 +8,7 @@ fn series(at_s: impl Fn(f64) -> f64) -> Series {
         x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
     };
     let plan = |joint: f64, t: f64| joint * (step((t - 4.0) / 8.0) - 0.6 * step((t - 20.0) / 6.0));
-    let t_s: Vec<f64> = (0..4000).map(|k| f64::from(k) * 0.01).collect();
-    let track = |name: &str, size: f64| {
-        let q = t_s.iter().map(|&t| plan(size, at_s(t))).collect();
-        Track::new(name, t_s.clone(), q, &[]).unwrap()
-    };
+    let track = |name: &str, size: f64| Track::sampled(name, 4000, |t| plan(size, at_s(t)));
     Series { tracks: vec![track("swing", 1.0), track("boom", -0.5), track("stick", 0.8)] }
 }
 
@@ -85,15 +81,13 @@ fn what_machines_do_is_not() {
         let x = ((at_s - 4.0) / 1.2).clamp(0.0, 1.0);
         0.5 * x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
     };
-    let t_s: Vec<f64> = (0..1200).map(|k| f64::from(k) * 0.01).collect();
     let mut now = 0.0;
-    let follow = |t: &f64| {
+    let follow = |t: f64| {
         now += (short(t - 0.1) - now) * (1.0 - (-0.01_f64 / 0.25).exp());
         now
     };
-    let measured = Track::new("boom", t_s.clone(), t_s.iter().map(follow).collect(), &[]).unwrap();
-    let planned = Track::new("boom", t_s.clone(), t_s.iter().map(|t| short(*t)).collect(), &[]).unwrap();
-    let [planned, measured] = [planned, measured].map(|track| Series { tracks: vec![track] });
+    let measured = Series::sampled("boom", 1200, follow);
+    let planned = Series::sampled("boom", 1200, short);
     assert_eq!(message(&planned, &measured, false), None, "a short motion");
 }
 

@@ -28,6 +28,29 @@ pub(in crate::render) struct Chart {
     pub(in crate::render) size: Size,
 }
 
+impl Chart {
+    /// Points with names, across and up, over a guide from corner to corner.
+    pub(in crate::render) fn against(
+        [across, up]: [String; 2],
+        [guide, point]: [&str; 2],
+        ends: [f64; 2],
+        points: Vec<(String, [f64; 2])>,
+    ) -> Self {
+        let (names, places): (_, Vec<[f64; 2]>) = points.into_iter().unzip();
+        let [x, y] = [0, 1].map(|k| places.iter().map(|place| place[k]).collect());
+        let points = Series::of(point, Role::Point, 0, y).named(names);
+        let series = vec![Series::of(guide, Role::Guide, 1, ends.to_vec()), points];
+        Self {
+            x_label: across.into(),
+            xs: vec![x, ends.to_vec()],
+            x_range: Some(ends),
+            panels: vec![Panel { range: Some(ends), ..Panel::of(up, 1.0, series) }],
+            size: Size::Half,
+            ..Self::default()
+        }
+    }
+}
+
 /// How much room a chart takes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -77,6 +100,11 @@ impl Series {
     /// Values over one of the chart's horizontal coordinates, whose points have no names.
     pub(in crate::render) fn of(name: impl Into<String>, role: Role, x: usize, y: Vec<f64>) -> Self {
         Self { name: name.into(), role, x, y, names: Vec::new() }
+    }
+
+    /// With a name for each point.
+    pub(in crate::render) fn named(self, names: Vec<String>) -> Self {
+        Self { names, ..self }
     }
 }
 
@@ -187,6 +215,11 @@ pub(in crate::render) fn rounded(value: f64) -> f64 {
 /// Decimals that a plot of speeds, shares and pressures shows, and one of a plan.
 pub(in crate::render) fn hundredths(value: f64) -> f64 {
     (100.0 * value).round() / 100.0
+}
+
+/// Millimetres with one decimal.
+pub(in crate::render) fn millimetres(m: f64) -> f64 {
+    (1e4 * m).round() / 10.0
 }
 
 /// Values at places; where the pen is lifted, not-a-number.
