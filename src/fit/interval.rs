@@ -44,8 +44,12 @@ pub(super) mod discrepancy {
     pub(in crate::fit) const FEED_FORWARD: [f64; 2] = [0.14, 0.25];
     /// Of how late set values come, for a part of which the lag of the loop stands in.
     pub(in crate::fit) const SET_VALUES_LATE: f64 = 0.38;
+    /// Of the feed-forward where no start is sharp: a filter of set values that smooth runs do not show takes it for lower.
+    pub(in crate::fit) const SMOOTH_FEED_FORWARD: f64 = 0.20;
     /// Of the ratio of gains.
     pub(in crate::fit) const GAIN: f64 = 0.10;
+    /// Of the ratio of gains where no start is sharp: the middle of the dead band stands in for it.
+    pub(in crate::fit) const SMOOTH_GAIN: f64 = 0.25;
 }
 
 /// Deviations of a logarithm above which a number is not identified.
@@ -186,7 +190,8 @@ impl Knowledge {
     pub(super) fn feed_forward(&self, problem: &Problem, x: &[f64]) -> Estimated {
         let part = (FEED_FORWARD, problem.priors.of(FEED_FORWARD).deviation);
         let model = problem.model(x);
-        let missed = behind(problem, discrepancy::FEED_FORWARD);
+        let sharp = behind(problem, discrepancy::FEED_FORWARD);
+        let missed = self.missed(sharp, sharp.max(discrepancy::SMOOTH_FEED_FORWARD));
         let found = self.positive(model.feed_forward, &[part], missed);
         let leads = model.set_value_filter_s * model.position_gain_1_s < model.feed_forward;
         let sure = leads && found.interval.is_some_and(|[low, _]| low >= LEAST_FEED_FORWARD);

@@ -242,7 +242,11 @@ fn report(
         integral_gain_1_s2: integral,
         feed_forward: knowledge.feed_forward(problem, &found.x),
         set_values_late_s: knowledge.set_values_late(problem, &found.x),
-        gain_ratio: one(ASYMMETRY, model.asymmetry.exp(), discrepancy::GAIN),
+        gain_ratio: one(
+            ASYMMETRY,
+            model.asymmetry.exp(),
+            knowledge.missed(discrepancy::GAIN, discrepancy::SMOOTH_GAIN),
+        ),
         speed_limit_growing_rad_s: limit(0),
         speed_limit_shrinking_rad_s: limit(1),
         acceleration_limit_growing_rad_s2: limit(2),

@@ -125,9 +125,10 @@ fn along(motion: &Motion, value: f64) -> f64 {
     f64::from(motion.direction) * value
 }
 
-/// A joint that covers this share of the planned travel, and so many times what counts as a motion, did not rest.
+/// A joint that covers this share of the planned travel did not rest.
 const WENT_ALONG: f64 = 0.4;
-const SURELY: f64 = 2.0;
+/// That is asked of a joint whose whole interval is later than this, s.
+const SURELY_LATE_S: f64 = 0.1;
 
 /// Delay of one transition.
 pub(super) fn delay(
@@ -150,7 +151,8 @@ pub(super) fn delay(
     }
     let (early_s, late_s) = (planned_s - asked.interval_s[0], asked.interval_s[1] - planned_s);
     let onset = unshaken(pair, signals, motion, onset, planned_s, rules).unwrap_or(onset);
-    if went_along(pair, signals, (planned, planned_s), onset.at_s) {
+    let surely_late = onset.interval_s[0] - blind_s - planned_s > SURELY_LATE_S;
+    if surely_late && went_along(pair, signals, (planned, planned_s), onset.at_s) {
         return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     }
     Delay {
@@ -190,7 +192,7 @@ fn went_along(pair: &Pair, signals: &Signals, (planned, planned_s): (&Motion, f6
     }
     let went = |position: &[f64]| along(planned, position[to] - position[from]);
     let came = went(&signals.measured_rad);
-    came >= WENT_ALONG * went(&pair.planned) && came >= SURELY * signals.min_travel
+    came >= WENT_ALONG * went(&pair.planned) && came >= signals.min_travel
 }
 
 /// A joint that is shaken by the others just before it is asked to move seems to answer early; its

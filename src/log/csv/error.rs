@@ -125,7 +125,7 @@ pub enum CsvError {
     #[error(
         "column {column:?} {says} and reaches {}, too far for degrees, too: is it in steps of an encoder? Say what \
          one is with --planned JOINT=FACTOR*COLUMN,... --measured JOINT=FACTOR*COLUMN,... --degrees, or --slides \
-         JOINT=mm of a joint that slides",
+         JOINT=mm of a joint that slides; --planned and --measured that name the other columns leave it out",
         reach.round()
     )]
     Counts { column: String, says: String, reach: f64 },

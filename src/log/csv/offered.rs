@@ -6,6 +6,10 @@ use super::{
 };
 use crate::text::shell_word;
 
+/// Letters of the place of a tool, and of its orientation as some controllers tell it.
+pub(super) const PLACE: [&str; 3] = ["x", "y", "z"];
+pub(super) const ORIENTATION: [&str; 3] = ["a", "b", "c"];
+
 /// Pairs that are written out.
 const MOST: usize = 12;
 
@@ -21,6 +25,15 @@ pub(super) fn offered(names: &[String]) -> Option<String> {
             Some((key, planned, measured))
         });
     let pairs: Vec<_> = pairs.take(MOST).collect();
+    // `A`, `B` and `C` beside `X`, `Y` and `Z` turn.
+    let has = |letter: &str| pairs.iter().any(|(key, ..)| *key == letter);
+    let tool = PLACE.iter().chain(&ORIENTATION).all(|letter| has(letter));
+    let slides: Vec<String> = pairs
+        .iter()
+        .map(|(key, ..)| *key)
+        .filter(|key| !(tool && ORIENTATION.contains(&key.as_str())))
+        .map(|key| format!("{key}=mm"))
+        .collect();
     let list = |of: &dyn Fn(&(&String, &&String, &&String)) -> String| {
         shell_word(&pairs.iter().map(of).collect::<Vec<_>>().join(","))
     };
@@ -29,7 +42,7 @@ pub(super) fn offered(names: &[String]) -> Option<String> {
             "--planned {} --measured {}, with --slides {} if they are lengths of that unit, else with --degrees or --radians",
             list(&|(key, planned, _)| format!("{key}={planned}")),
             list(&|(key, _, measured)| format!("{key}={measured}")),
-            list(&|(key, ..)| format!("{key}=mm"))
+            shell_word(&slides.join(","))
         )
     })
 }

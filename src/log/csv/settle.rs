@@ -9,16 +9,13 @@ use super::{
     label::Label,
     letter::Lettered,
     number::{Looks, looks},
+    offered::{ORIENTATION, PLACE},
     unit::{METRE, Measure},
 };
 use crate::remark::{Code, Remarks};
 
 /// Letters behind a quantity that are gains of a controller where all three come: `position_p`.
 const GAINS: [&str; 3] = ["p", "i", "d"];
-
-/// Letters of the place of a tool, and of its orientation as some controllers tell it.
-const PLACE: [&str; 3] = ["x", "y", "z"];
-const ORIENTATION: [&str; 3] = ["a", "b", "c"];
 
 /// `A`, `B` and `C` beside `X`, `Y` and `Z` are the orientation of a tool, no joints, unless the caller names them.
 pub(super) fn leave_out_orientation(labels: &mut [Label], named: &BTreeSet<usize>, remarks: &mut Remarks) {

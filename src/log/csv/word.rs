@@ -36,7 +36,7 @@ const FOREIGN: &str = "qdd ddq ddot acc accel acceleration beschleunigung torque
     voltage spannung power leistung temperature temp temperatur pressure druck flow valve ventil spool \
     force kraft mode status error err fehler deviation abweichung lag schleppfehler tcp tool pose cart \
     cartesian euler rpy quat quaternion output input digital analog safety runtime counter seq sequence index scaling fraction robot x y z jerk \
-    level gain gains clamp raw temperatures currents torques forces pressures modes voltages following schleppabstand erreur écart errore \
+    max min maximum minimum limit limits level gain gains clamp raw temperatures currents torques forces pressures modes voltages following schleppabstand erreur écart errore \
     pression presión pressione 误差 偏差 压力 电流 电压 温度 力矩 扭矩 流量 加速度 誤差 圧力 電流 電圧 流量 오차 압력 ошибка давление";
 
 fn meaning_of_word(word: &str) -> Meaning {

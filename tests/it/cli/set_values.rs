@@ -9,12 +9,15 @@ use super::csv::report;
 /// How late the joint is, s.
 const LATE_S: f64 = 0.13;
 
-/// A table of so many rows a second, 20 s long, of a set value and of a joint that is late; `set` is asked at each row.
-fn table(rate_hz: u32, set: impl Fn(f64) -> f64, cell: impl Fn(u32, f64) -> String) -> String {
+/// A table of so many rows a second, 20 s long, of a set value and of a joint that is late and goes to it over so many hundredths of a
+/// second; `set` is asked at each row.
+fn table((rate_hz, over): (u32, u32), set: impl Fn(f64) -> f64, cell: impl Fn(u32, f64) -> String) -> String {
     let head = "t_s,boom_set_deg,boom_act_deg\n".to_owned();
     (0..20 * rate_hz).fold(head, |mut text, k| {
         let t_s = f64::from(k) / f64::from(rate_hz);
-        writeln!(text, "{t_s:.4},{},{:.4}", cell(k, set(t_s)), set((t_s - LATE_S).max(0.0))).unwrap();
+        let before = |back: u32| set((t_s - LATE_S - 0.01 * f64::from(back)).max(0.0));
+        let came = (0..over).map(before).sum::<f64>() / f64::from(over);
+        writeln!(text, "{t_s:.4},{},{came:.4}", cell(k, set(t_s))).unwrap();
         text
     })
 }
@@ -52,7 +55,7 @@ fn a_count_before_a_motion_is_no_start_of_it() {
             ((20.0 * (rise(4.0, 1.0) - rise(9.0, 3.0)) + 30.0 * rise(14.0, 2.0)) / COUNT).round() * COUNT
                 - count
         };
-        let (_, starts) = starts(folder.path(), &table(rate_hz, set, written));
+        let (_, starts) = starts(folder.path(), &table((rate_hz, 1), set, written));
         assert!(starts.len() >= 3, "{rate_hz} {back_s}: {starts:?}");
         for (planned_s, [low_s, high_s]) in starts {
             let near = [4.0, 9.0, 14.0].iter().any(|from| (from - 0.1..from + 0.4).contains(&planned_s));
@@ -68,7 +71,7 @@ fn a_count_before_a_motion_is_no_start_of_it() {
 fn each_step_between_two_angles_is_a_start_however_many_there_are() {
     let folder = tempfile::tempdir().unwrap();
     let set = |t_s: f64| if (t_s / 0.8).floor().rem_euclid(2.0) > 0.0 { 10.0 } else { 0.0 };
-    let (found, starts) = starts(folder.path(), &table(100, set, written));
+    let (found, starts) = starts(folder.path(), &table((100, 25), set, written));
     assert_eq!((starts.len(), &found["joints"][0]["starts"]), (24, &Value::from(24)));
     assert!(starts.iter().all(|(_, [low_s, high_s])| (*low_s..=*high_s).contains(&LATE_S)), "{starts:?}");
 }
@@ -86,13 +89,13 @@ fn set_values_that_are_written_now_and_then_hold_until_the_next() {
         }
     };
     let number = |of: &Value| of["joints"][0]["tracking_error"]["rms"].as_f64().unwrap();
-    let (whole, _) = starts(folder.path(), &table(100, set, written));
+    let (whole, _) = starts(folder.path(), &table((100, 25), set, written));
     for refreshed in [100, 400, 4000] {
         let cell = |k: u32, value: f64| {
             let changes = [0, 200, 947].contains(&k);
             if changes || k % refreshed == 0 { format!("{value:.4}") } else { String::new() }
         };
-        let (found, starts) = starts(folder.path(), &table(100, set, cell));
+        let (found, starts) = starts(folder.path(), &table((100, 25), set, cell));
         assert!((number(&found) / number(&whole) - 1.0).abs() < 0.05, "{refreshed}: {}", found["joints"][0]);
         assert_eq!(starts.len(), 2, "{refreshed}");
         let remarks = found["remarks"].to_string();
