@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn a_plan_that_is_the_speed_of_its_measurement_is_told() {
         let [speed, position] = [|t: f64| 0.64 * (0.8 * t).cos(), |t: f64| 0.8 * (0.8 * t).sin()];
-        let [planned, came] = [track("boom", &speed), track("boom", &position)];
+        let [planned, came] = [track("boom", speed), track("boom", position)];
         let said = of_joint(&planned, &came, std::iter::empty());
         assert!(said.as_ref().is_some_and(|said| said.contains("runs like the speed")), "{said:?}");
     }

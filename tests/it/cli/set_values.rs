@@ -93,7 +93,7 @@ fn set_values_that_are_written_now_and_then_hold_until_the_next() {
     for refreshed in [100, 400, 4000] {
         let cell = |k: u32, value: f64| {
             let changes = [0, 200, 947].contains(&k);
-            if changes || k % refreshed == 0 { format!("{value:.4}") } else { String::new() }
+            if changes || k.is_multiple_of(refreshed) { format!("{value:.4}") } else { String::new() }
         };
         let (found, starts) = starts(folder.path(), &table((100, 25), set, cell));
         assert!((number(&found) / number(&whole) - 1.0).abs() < 0.05, "{refreshed}: {}", found["joints"][0]);

@@ -127,7 +127,7 @@ fn clocks_that_run_apart_are_told_and_joints_that_lag_each_by_itself_are_not() {
     let series = |at_s: &dyn Fn(f64, f64) -> f64| {
         let track = |joint: u8| {
             let q = t_s.iter().map(|&t| plan(joint.into(), at_s(joint.into(), t))).collect();
-            Track::new(&format!("J{joint}"), t_s.clone(), q, &[]).unwrap()
+            Track::new(format!("J{joint}"), t_s.clone(), q, &[]).unwrap()
         };
         Series { tracks: (0..4).map(track).collect() }
     };
