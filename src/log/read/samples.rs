@@ -8,6 +8,7 @@ use super::{
 };
 use crate::{
     log::source::Table,
+    math::range,
     remark::{Code, Remarks},
     series::{Clock, Instants, JointKind, Quantity, Signal, Track, all_finite, split_at_gaps},
     units::seconds_since,
@@ -264,7 +265,7 @@ fn drop_spikes(kept: &mut Vec<usize>, t_s: &[f64], at: impl Fn(usize) -> f64) ->
         spikes.sort_unstable();
         spikes.dedup();
     }
-    if let Some(code) = code_of(&spikes, value) {
+    if let Some(code) = code_of(&spikes, n, value) {
         spikes.extend(runs_of(code, n, value));
         spikes.sort_unstable();
         spikes.dedup();
@@ -281,13 +282,16 @@ fn drop_spikes(kept: &mut Vec<usize>, t_s: &[f64], at: impl Fn(usize) -> f64) ->
 const CODE: usize = 3;
 const LONGEST_RUN: usize = 50;
 
-/// The value that most of these samples share, if they are a code.
-fn code_of(spikes: &[usize], value: impl Fn(usize) -> f64) -> Option<f64> {
+/// The value that most of these samples share, if they are a code: beyond what the joint goes to, by more than its range.
+fn code_of(spikes: &[usize], n: usize, value: impl Fn(usize) -> f64) -> Option<f64> {
     let mut values: Vec<f64> = spikes.iter().map(|k| value(*k)).collect();
     values.sort_unstable_by(f64::total_cmp);
     let code = *values.get(values.len() / 2)?;
     let equal = values.iter().filter(|one| one.total_cmp(&code).is_eq()).count();
-    (equal >= CODE && 2 * equal > spikes.len()).then_some(code)
+    let joint = (0..n).filter(|k| spikes.binary_search(k).is_err()).map(&value);
+    let [lowest, highest] = range(joint.filter(|at| at.total_cmp(&code).is_ne()));
+    let beyond = (lowest - code).max(code - highest) > (highest - lowest).max(FAR);
+    (equal >= CODE && 2 * equal > spikes.len() && beyond).then_some(code)
 }
 
 /// Samples of a code in runs that begin and end with a jump, or where the log does.
