@@ -20,7 +20,7 @@ pub(super) struct ColumnArgs {
     #[arg(long, value_name = "COLUMN", help_heading = "Columns", conflicts_with = "rate")]
     time: Option<String>,
 
-    /// Unit of the time: s, ms, us, ns, min, h, filetime, excel, datenum; of dates, what comes first: dmy, mdy
+    /// Unit of the time: s, ms, us, ns, min, h, filetime, dotnet, excel, datenum; of dates, what comes first: dmy, mdy
     #[arg(long, value_name = "UNIT", help_heading = "Columns", conflicts_with = "rate")]
     time_unit: Option<String>,
 

@@ -20,14 +20,17 @@ const RESTS_RAD: f64 = 1e-3;
 /// Planned speed that is motion, rad/s.
 const MOVES_RAD_S: f64 = 1e-3;
 
-/// A joint that rests this far from its plan in the mean of its rests, the one before its first motion and that after its last among
-/// them, was measured from another zero, or its load holds it off, rad: no correction that ends where the plan ends mends that, and
-/// one in between drives a joint off that is where it should be.
-const SHIFTED_RAD: f64 = 0.3 * DEGREE_RAD;
+/// A joint that rests this far from its plan before its first motion, and as far after its last one, was measured from
+/// another zero, or its load holds it off, rad: no correction that ends where the plan ends mends that.
+const SHIFTED_RAD: f64 = DEGREE_RAD;
 
-/// The rests agree with their mean within this share of it, where they are two, three, and more: a dead band leaves a joint now on one
-/// side of its plan and now on the other.
-const SHIFTED_ALIKE: [f64; 3] = [0.2, 0.35, 0.6];
+/// The two rests agree within this share.
+const SHIFTED_ALIKE: f64 = 0.2;
+
+/// The same in the mean of all rests, some of which were reached from below and some from above: a dead band leaves a joint now on one
+/// side of its plan and now on the other. They agree within this share where they are three, and where they are more.
+const ALL_SHIFTED_RAD: f64 = 0.3 * DEGREE_RAD;
+const ALL_ALIKE: [f64; 2] = [0.35, 0.6];
 
 /// What a joint does so long after its plan belongs to the run, s.
 pub const AFTER_S: f64 = 4.0;
@@ -92,14 +95,25 @@ impl Answer {
             (count >= steps_in(LEAST_AT_REST_S)).then(|| sum / count as f64)
         };
         let rests = rests(planned);
-        let ends = rests.first().zip(rests.last()).filter(|_| rests.len() > 1);
-        if !ends.is_some_and(|(first, last)| off_rad(first).is_some() && off_rad(last).is_some()) {
+        let (Some(first), Some(last)) = (rests.first(), rests.last().filter(|_| rests.len() > 1)) else {
+            return;
+        };
+        let Some([before, after]) = off_rad(first).zip(off_rad(last)).map(<[f64; 2]>::from) else { return };
+        let mean_of = |off_rad: &[f64]| off_rad.iter().sum::<f64>() / off_rad.len() as f64;
+        let ends_rad = mean_of(&[before, after]);
+        if ends_rad.abs() > SHIFTED_RAD && (before - after).abs() < SHIFTED_ALIKE * ends_rad.abs() {
+            self.shifted_rad = ends_rad;
             return;
         }
-        let off_rad: Vec<f64> = rests.iter().filter_map(off_rad).collect();
-        let mean_rad = off_rad.iter().sum::<f64>() / off_rad.len() as f64;
-        let alike = SHIFTED_ALIKE[(off_rad.len() - 2).min(SHIFTED_ALIKE.len() - 1)] * mean_rad.abs();
-        if mean_rad.abs() > SHIFTED_RAD && off_rad.iter().all(|off| (off - mean_rad).abs() < alike) {
+        let reached = |way: f64| {
+            let mut pairs = rests.windows(2).filter(|two| off_rad(&two[1]).is_some());
+            pairs.any(|two| way * (planned[two[1].start].0 - planned[two[0].start].0) > 0.0)
+        };
+        let all_rad: Vec<f64> = rests.iter().filter_map(off_rad).collect();
+        let mean_rad = mean_of(&all_rad);
+        let alike = ALL_ALIKE[usize::from(all_rad.len() > 3)] * mean_rad.abs();
+        let far = mean_rad.abs() > ALL_SHIFTED_RAD && all_rad.len() > 2;
+        if far && reached(1.0) && reached(-1.0) && all_rad.iter().all(|off| (off - mean_rad).abs() < alike) {
             self.shifted_rad = mean_rad;
         }
     }
@@ -246,10 +260,31 @@ mod tests {
         };
         let (by, left) = shifted(0.035, 0.035, &|_| true);
         assert!((by - 0.035).abs() < 1e-9 && left.abs() < 1e-9);
-        assert!((shifted(0.01, 0.011, &|_| true).0 - 0.0105).abs() < 1e-9);
-        for (before, after) in [(0.035, 0.0), (0.0, 0.035), (0.035, -0.035), (0.02, 0.035), (0.004, 0.004)] {
+        for (before, after) in [(0.035, 0.0), (0.0, 0.035), (0.035, -0.035), (0.02, 0.035), (0.015, 0.015)] {
             assert!(shifted(before, after, &|_| true).0.abs() < 1e-12, "{before} {after}");
         }
         assert!(shifted(0.035, 0.035, &|k| k > 250).0.abs() < 1e-12, "not seen at rest");
+    }
+
+    #[test]
+    fn a_small_zero_is_told_from_a_dead_band_by_rests_that_are_reached_from_both_sides() {
+        let n = 2000;
+        let moved = |t_s: f64, from_s: f64| ((t_s - from_s) / 2.0).clamp(0.0, 1.0);
+        let plan = |k: usize, down: f64| {
+            let t_s = k as f64 * STEP_S;
+            moved(t_s, 2.0) - down * moved(t_s, 7.0) + 0.5 * moved(t_s, 13.0)
+        };
+        let shifted = |down: f64, off_rad: [f64; 4]| {
+            let planned: Vec<(f64, f64)> = (0..n).map(|k| (plan(k, down), 0.0)).collect();
+            let at = |k: usize| off_rad[[3.0, 8.0, 14.0].iter().filter(|t| k as f64 * STEP_S > **t).count()];
+            let measured_rad = (0..n).map(|k| plan(k, down) + at(k)).collect();
+            let mut answer = Answer { measured_rad, seen: vec![true; n], ..Answer::default() };
+            answer.shift(&planned);
+            answer.shifted_rad
+        };
+        assert!((shifted(0.7, [0.01, 0.008, 0.012, 0.01]) - 0.01).abs() < 1e-9);
+        assert!(shifted(-0.7, [0.01, 0.008, 0.012, 0.01]).abs() < 1e-12, "all from one side");
+        assert!(shifted(0.7, [0.01, -0.01, 0.01, -0.01]).abs() < 1e-12, "a dead band");
+        assert!(shifted(0.7, [0.004; 4]).abs() < 1e-12, "little");
     }
 }

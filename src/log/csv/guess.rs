@@ -32,14 +32,15 @@ fn is_round(step_s: f64) -> bool {
 /// The unit of a column that names none: by its size if it counts from 1970, or else the one in
 /// which the rows come at 2 to 2000 Hz; fractions may be of minutes or hours. `counts`: it rises by 1 in every row.
 pub(super) fn guess_unit(first: f64, step: f64, whole: bool, counts: bool) -> (Option<Unit>, Option<String>) {
-    // From 1995 to 2130.
+    // From 1995 to 2130, and to 2038.
     const SINCE_1601: [f64; 2] = [1.243e17, 1.67e17];
-    const SINCE_1: [f64; 2] = [6.29e17, 6.73e17];
+    const SINCE_1: [f64; 2] = [6.29e17, 6.43e17];
     if whole && (SINCE_1601[0]..SINCE_1601[1]).contains(&first) {
         return (Some(FILETIME), None);
     }
     if whole && (SINCE_1[0]..SINCE_1[1]).contains(&first) {
-        return (Some(TICKS), None);
+        let doubt = "says no unit; numbers of this size are taken as steps of 100 ns since the year 1 (.NET), else say --time-unit";
+        return (Some(TICKS), Some(doubt.to_owned()));
     }
     if !whole && (SINCE_1899_DAYS[0]..SINCE_1899_DAYS[1]).contains(&first) && step < 1e-4 {
         return (Some(EXCEL_DAY), None);

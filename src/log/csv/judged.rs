@@ -18,9 +18,11 @@ const JUDGES: [&str; 8] =
 const GOOD: [&str; 4] = ["good", "ok", "valid", "gut"];
 const BAD: [&str; 7] = ["bad", "invalid", "error", "err", "fault", "schlecht", "badwaitingforinitialdata"];
 /// Headers of columns that say of a row whether it is good, and what they say then and else.
-const WHETHER: [&str; 4] = ["valid", "is_valid", "isvalid", "good"];
-const YES: [&str; 2] = ["true", "1"];
-const NO: [&str; 2] = ["false", "0"];
+const WHETHER: [&str; 3] = ["valid", "is_valid", "isvalid"];
+const YES: [&str; 3] = ["true", "1", "1.0"];
+const NO: [&str; 3] = ["false", "0", "0.0"];
+/// Where more than one row in so many is bad, the column means another thing: that a motion is under way.
+const MOST: u64 = 5;
 
 /// In the quality of OPC, 0 to 255, good begins with 192, and below 64 all is bad.
 const OPC_GOOD: &str = "192";
@@ -44,6 +46,8 @@ pub(super) fn without_bad<'a>(
 pub(super) struct Judge {
     column: usize,
     is_opc: bool,
+    /// Whether it only says yes or no.
+    whether: bool,
     /// What it says of a bad row.
     bad: &'static [&'static str],
     header: String,
@@ -52,18 +56,22 @@ pub(super) struct Judge {
 impl Judge {
     /// By the first rows of a table; `None` of one without such a column.
     pub(super) fn of(head: &Head) -> Option<Self> {
-        let plain = |name: &String| name.trim_matches(['_', ' ']).to_lowercase();
-        let whether = |name: &String| WHETHER.contains(&plain(name).as_str());
-        let judges = |name: &String| JUDGES.contains(&plain(name).as_str()) || whether(name);
-        let column = head.names.iter().position(judges)?;
-        let [good, bad]: [&[&str]; 2] =
-            if whether(&head.names[column]) { [&YES, &NO] } else { [&GOOD, &BAD] };
+        (0..head.names.len()).find_map(|column| Self::of_column(head, column))
+    }
+
+    fn of_column(head: &Head, column: usize) -> Option<Self> {
+        let plain = head.names[column].trim_matches(['_', ' ']).to_lowercase();
+        let whether = WHETHER.contains(&plain.as_str());
+        let [good, bad]: [&[&str]; 2] = if whether { [&YES, &NO] } else { [&GOOD, &BAD] };
         let sample = || head.sample.iter().filter_map(|row| row.get(column));
-        let is_opc = head.names[column].to_lowercase().contains("quali")
+        let is_opc = plain.contains("quali")
             && sample().any(|cell| says(cell, &[OPC_GOOD]))
             && sample().all(|cell| opc(cell).is_some());
         let tells = is_opc || sample().any(|cell| says(cell, good));
-        tells.then(|| Self { column, is_opc, bad, header: head.names[column].clone() })
+        let answers = !whether || sample().all(|cell| says(cell, good) || says(cell, bad));
+        let judges = whether || JUDGES.contains(&plain.as_str());
+        let header = head.names[column].clone();
+        (judges && tells && answers).then(|| Self { column, is_opc, whether, bad, header })
     }
 
     pub(super) fn is_bad(&self, row: &ByteRecord) -> bool {
@@ -81,7 +89,7 @@ impl Judge {
 fn says(cell: &[u8], words: &[&str]) -> bool {
     // `Bad [0]`, as some write with the number behind it.
     let text = cell_text(cell).to_lowercase();
-    words.contains(&text.split([' ', '[', '(']).next().unwrap_or_default())
+    words.contains(&text.split(['[', '(']).next().unwrap_or_default().trim_end())
 }
 
 fn opc(cell: &[u8]) -> Option<u8> {
@@ -91,12 +99,15 @@ fn opc(cell: &[u8]) -> Option<u8> {
 fn kept(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Option<Vec<u8>> {
     let (dialect, head) = looked_at(file, text, options)?;
     let judge = Judge::of(&head)?;
-    let mut bad = 0;
+    let (mut bad, mut rows) = (0, 0);
     let kept = rewritten(text, dialect.separator, |line, record, kept| {
         let is_bad = line >= head.first_line && judge.is_bad(record);
-        bad += u64::from(is_bad);
+        (bad, rows) = (bad + u64::from(is_bad), rows + 1);
         if is_bad { Ok(()) } else { kept.write_byte_record(record) }
     });
+    if judge.whether && MOST * bad > rows {
+        return None;
+    }
     judge.remark(bad, remarks);
     kept.filter(|_| bad > 0)
 }

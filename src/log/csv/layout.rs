@@ -233,7 +233,10 @@ fn odd(label: &Label) -> Option<Unit> {
     label.stated.filter(|unit| unit.is_odd() && label.role.is_some())
 }
 
-/// Two columns for one thing are an error, unless they say the same.
+/// Words that say plan or measurement where nothing else does.
+const SECOND: [&str; 6] = ["estimate", "pfb", "fdb", "pcmd", "req", "dmd"];
+
+/// Two columns for one thing are an error, unless they say the same, or one says so by a word of these.
 fn drop_repeats(
     head: &Head,
     labels: &[Label],
@@ -249,6 +252,23 @@ fn drop_repeats(
             kept.push(draft);
             continue;
         };
+        // What an observer makes of a measurement, or one drive calls a command, gives way to what says so.
+        let weak = |column: usize| labels[column].words.iter().any(|word| SECOND.contains(&word.as_str()));
+        let [before, now] = [first.column, draft.column].map(weak);
+        if before != now {
+            let [used, left] =
+                if before { [draft.column, first.column] } else { [first.column, draft.column] };
+            let message = format!(
+                "column {:?} says the same of a joint as {:?}, and was not used",
+                head.names[left], head.names[used]
+            );
+            remarks.add(Code::Ambiguous, 1, message);
+            if before {
+                kept.retain(|other| !same(&other));
+                kept.push(draft);
+            }
+            continue;
+        }
         let differs = |row: &Vec<Vec<u8>>| row.get(first.column) != row.get(draft.column);
         if head.sample.iter().any(differs) && !in_another_unit(head, labels, [first.column, draft.column]) {
             let shown = |column: usize| format!("{:?} (#{})", head.names[column], column + 1);

@@ -116,7 +116,7 @@ const UNITS: [(&[&str], Unit); 40] = [
     (&["min", "minute", "minutes"], unit("min", Measure::Time, 60e9)),
     (&["h", "hr", "hrs", "hour", "hours"], unit("h", Measure::Time, 3600e9)),
     (&["filetime", "100 ns since 1601"], FILETIME),
-    (&[".net ticks", "100 ns since year 1"], TICKS),
+    (&["dotnet", ".net ticks", "100 ns since year 1"], TICKS),
     (&["excel", "days since 1899-12-30"], EXCEL_DAY),
     (&["datenum", "days since year 0"], DATENUM),
     (&["pa"], unit("Pa", Measure::Pressure, 1.0)),

@@ -224,7 +224,7 @@ impl Assembly {
             } else {
                 quality::of_clock(topic, self.base, &clock, remarks);
             }
-            quality::of_table(topic, table, !self.extracted.tables.is_empty(), remarks);
+            quality::of_table(topic, table, remarks);
         }
         if self.laid_onto != Some(candidate.source)
             && let Content::Table(table) = &mut self.extracted.sources[candidate.source].content

@@ -21,9 +21,12 @@ const STEPS: f64 = 3.0;
 /// set values: no planner goes on smoothly between them.
 const APART_S: f64 = 0.3;
 const SPARSER: f64 = 5.0;
-/// Unless this share of its changes is followed by one the same way, by no more than so many times as much.
-const GO_ON: f64 = 0.5;
-const ALIKE: f64 = 4.0;
+/// If the measurement follows steps so much better than lines between the values, at the delay that is best for each, s: root mean square.
+const BETTER: f64 = 0.8;
+const LATEST_S: f64 = 2.0;
+const LATER_S: f64 = 0.05;
+/// Instants at which that is asked.
+const INSTANTS: usize = 500;
 
 /// Holds the plan through its silences, up to the end of the measurement, if it is written so; and the measurement, if
 /// that is, too. `one_file`: one recorder wrote both, so that a plan of few values is what was set, and no key points.
@@ -99,11 +102,15 @@ fn of_set_values(planned: &mut Series, measured: &Series, remarks: &mut Remarks)
         };
         let between_s = beside.sample_interval_s();
         let gaps_s: Vec<f64> = track.t_s().windows(2).map(|two| two[1] - two[0]).collect();
-        if gaps_s.is_empty() || median(gaps_s) < APART_S.max(SPARSER * between_s) || samples_a_motion(track) {
+        if gaps_s.is_empty() || median(gaps_s) < APART_S.max(SPARSER * between_s) {
             continue;
         }
         let until_s = beside.t_s().last().copied().unwrap_or_default();
-        if let Some(held) = in_steps(track, between_s, until_s) {
+        let lines =
+            Track::of(track.kind(), track.name(), track.t_s().to_vec(), track.position().to_vec(), &[]);
+        let both = lines.ok().zip(in_steps(track, between_s, until_s));
+        if let Some((_, held)) = both.filter(|(lines, held)| off(held, beside) < BETTER * off(lines, beside))
+        {
             values += track.len() as u64;
             names.push(track.name().to_owned());
             *track = held;
@@ -119,13 +126,19 @@ fn of_set_values(planned: &mut Series, measured: &Series, remarks: &mut Remarks)
     remarks.add(Code::Guessed, values, message);
 }
 
-/// Whether changes mostly go on as they were: samples of a motion, however few, are no set values.
-fn samples_a_motion(track: &Track) -> bool {
-    let changes: Vec<f64> = track.position().windows(2).map(|two| two[1] - two[0]).collect();
-    let moves = changes.iter().filter(|change| change.abs() > 0.0).count();
-    let goes_on =
-        |two: &&[f64]| two[0] * two[1] > 0.0 && (ALIKE.recip()..=ALIKE).contains(&(two[1] / two[0]));
-    (changes.windows(2).filter(goes_on).count() as f64) >= GO_ON * moves as f64
+/// What a measurement is off a plan that it follows at the best delay, root mean square: no machine answers what is yet to come.
+fn off(plan: &Track, came: &Track) -> f64 {
+    let step = came.len().div_ceil(INSTANTS).max(1);
+    let instants = || came.t_s().iter().zip(came.position()).step_by(step);
+    let at = |late_s: f64| {
+        let mut cursor = 0;
+        let squares =
+            instants().map(|(t_s, q)| (q - plan.held_after(&mut cursor, t_s - late_s).position).powi(2));
+        squares.sum::<f64>()
+    };
+    let lates_s = std::iter::successors(Some(0.0), |late_s| Some(late_s + LATER_S))
+        .take_while(|late_s| *late_s <= LATEST_S);
+    (lates_s.map(at).fold(f64::INFINITY, f64::min) / instants().count().max(1) as f64).sqrt()
 }
 
 /// A track that holds each of its values until the next one, the last to an instant, with a sample in every so many seconds: a step is
@@ -250,22 +263,28 @@ mod tests {
 
     #[test]
     fn set_values_that_come_seldom_are_held_and_samples_of_a_motion_are_not() {
-        let measured = series(|_, _| true);
-        let told = |mut plan: Series| {
+        let told = |mut plan: Series, follows: &dyn Fn(f64) -> f64| {
             let mut remarks = Remarks::default();
+            let t_s: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.02).collect();
+            let q = t_s.iter().map(|t_s| follows(t_s - 0.2)).collect();
+            let measured = Series { tracks: vec![Track::new("J", t_s, q, &[]).unwrap()] };
             of_set_values(&mut plan, &measured, &mut remarks);
             (plan, remarks.as_slice().len())
         };
         let (t_s, q) = (vec![0.0, 2.0, 3.7, 5.7, 9.1, 14.0], vec![0.2, 0.7, 0.7, 0.4, 0.4, 0.1]);
         let cuts = crate::series::split_at_gaps(&t_s);
-        let set = Track::new("J", t_s, q, &cuts).unwrap();
-        let (held, remarks) = told(Series { tracks: vec![set] });
+        let set = Series { tracks: vec![Track::new("J", t_s.clone(), q.clone(), &cuts).unwrap()] };
+        let steps = |at_s: f64| q[t_s.partition_point(|t_s| *t_s <= at_s).max(1) - 1];
+        let (held, remarks) = told(set.clone(), &steps);
         let at = |t_s: f64| held.tracks[0].at(t_s).unwrap().position;
         assert_eq!(([1.97, 2.01, 9.0, 13.97, 19.9].map(at), remarks), ([0.2, 0.7, 0.4, 0.4, 0.1], 1));
-        for every in [5, 30] {
+        for every in [5, 30, 45] {
             let motion = series(|k, _| k % every == 0);
-            assert_eq!(told(motion.clone()), (motion, 0), "{every}");
+            assert_eq!(told(motion.clone(), &moves), (motion, 0), "{every}");
         }
+        // Key points that are joined by lines.
+        let lines = Track::new("J", t_s.clone(), q.clone(), &[]).unwrap();
+        assert_eq!(told(set.clone(), &|t_s| lines.held_at(t_s).position), (set, 0));
     }
 
     #[test]

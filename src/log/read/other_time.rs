@@ -45,6 +45,8 @@ const DRIFTS_S: f64 = 0.12;
 const DRIFTING: usize = 2;
 const DRIFTS_ALIKE: f64 = 0.4;
 const EVENLY: std::ops::RangeInclusive<f64> = 0.25..=0.75;
+/// The plan is as fast in each part, within this factor.
+const AS_FAST: f64 = 1.4;
 /// A part tells where the plan moves in it by this share of its motion.
 const PART_TELLS: f64 = 0.3;
 
@@ -131,7 +133,11 @@ fn clocks_apart(joints: &[Both]) -> Option<String> {
 /// that of the other, s, where it changes steadily and alike.
 fn drift(joints: &[Both]) -> Option<[f64; 3]> {
     let late = |joint: &Both| match joint.parts() {
-        [Some(first), Some(middle), Some(last)] => Some([first, middle, last].map(|part| shift_s(&[part]))),
+        [Some(first), Some(middle), Some(last)] => {
+            // A joint at its speed limit, or in its dead band, is later the faster or the slower its plan.
+            let [slowest, fastest] = range([&first, &middle, &last].map(Both::planned_speed));
+            (fastest <= AS_FAST * slowest).then(|| [first, middle, last].map(|part| shift_s(&[part])))
+        }
         _ => None,
     };
     let each: Vec<[f64; 3]> = joints.iter().filter_map(late).collect();
@@ -210,6 +216,13 @@ impl<'a> Both<'a> {
 
     fn lasts_s(&self) -> Option<f64> {
         Some(self.came.last()?[0] - self.came.first()?[0])
+    }
+
+    /// Root mean square speed of the plan, a second.
+    fn planned_speed(&self) -> f64 {
+        let at: Vec<f64> = self.came.iter().map(|[t_s, _]| self.planned.held_at(*t_s).position).collect();
+        let squares: f64 = at.windows(2).map(|two| (two[1] - two[0]).powi(2)).sum();
+        squares.sqrt() / self.lasts_s().unwrap_or(f64::INFINITY)
     }
 
     /// The three parts of a run; none of one in which the joint hardly moves.

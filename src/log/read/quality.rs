@@ -66,15 +66,13 @@ pub(super) fn of_delays([planned_ns, measured_ns]: [Option<[i64; 3]>; 2], remark
     }
 }
 
-/// Remarks on what a topic holds. `imported`: cells that are no number were told of as the table was read, and a row of it may be of
-/// some joints only.
-pub(super) fn of_table(topic: &str, table: &Table, imported: bool, remarks: &mut Remarks) {
+pub(super) fn of_table(topic: &str, table: &Table, remarks: &mut Remarks) {
     let positions = |field: &&Field| !field.is_velocity && field.role != Role::Beside;
     for (k, field) in table.fields.iter().enumerate().filter(|(_, field)| positions(field)) {
         let path = &field.path;
         remarks.add(
             Code::NotFinite,
-            if imported { 0 } else { table.not_finite[k] },
+            table.not_finite[k],
             format!("values of {topic}:{path} that are NaN or infinite, dropped"),
         );
         remarks.add(

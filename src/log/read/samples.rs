@@ -280,7 +280,7 @@ fn drop_spikes(kept: &mut Vec<usize>, t_s: &[f64], at: impl Fn(usize) -> f64) ->
 
 /// So many equal values that no joint can have are the code of a reading that failed, which may come several times in a row.
 const CODE: usize = 3;
-const LONGEST_RUN: usize = 50;
+const LONGEST_RUN: usize = 3;
 
 /// The value that most of these samples share, if they are a code: beyond what the joint goes to, by more than its range.
 fn code_of(spikes: &[usize], n: usize, value: impl Fn(usize) -> f64) -> Option<f64> {

@@ -10,9 +10,13 @@ use crate::{
 const STANDS: f64 = 1e-4;
 const RESTS_S: f64 = 0.8;
 const LAST_S: f64 = 0.3;
-/// So many rests tell, over such a range, rad or m.
+/// So many rests tell, at so many places, over such a range, rad or m.
 const LEAST: usize = 5;
+const PLACES: usize = 4;
 const WIDE: [f64; 2] = [10.0 * DEGREE_RAD, 0.1];
+/// The rests that are reached from either side, two at least, say the same within this share, and those of either half of the range:
+/// dead bands, loads and stops do not.
+const ALIKE: f64 = 0.4;
 /// A share of the angle that is told, what it makes over the range, rad or m, and how much of the errors at rest it explains.
 const SHARE: f64 = 0.008;
 const COUNTS: [f64; 2] = [0.3 * DEGREE_RAD, 3e-3];
@@ -20,29 +24,42 @@ const EXPLAINS: f64 = 0.97;
 
 /// What is to be said of a joint whose errors at rest grow with its angle.
 pub(super) fn scaled(planned: &Track, measured: &Track) -> Option<String> {
-    let rests: Vec<[f64; 2]> = rests(planned)
+    let mut rests: Vec<[f64; 3]> = rests(planned)
         .into_iter()
-        .filter_map(|[from_s, to_s, at]| {
+        .filter_map(|[from_s, to_s, at, way]| {
             let within = measured.t_s().partition_point(|t_s| *t_s < from_s)
                 ..measured.t_s().partition_point(|t_s| *t_s <= to_s);
             let came = measured.position().get(within)?;
-            (!came.is_empty()).then(|| [at, came.iter().sum::<f64>() / came.len() as f64 - at])
+            (!came.is_empty()).then(|| [at, came.iter().sum::<f64>() / came.len() as f64 - at, way])
         })
         .collect();
-    let [at, off] = [0, 1].map(|of| rests.iter().map(|rest| rest[of]).collect::<Vec<f64>>());
+    rests.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let of = |rests: &[[f64; 3]]| [0, 1].map(|of| rests.iter().map(|rest| rest[of]).collect::<Vec<f64>>());
+    let [at, off] = of(&rests);
     let [lowest, highest] = range(at.iter().copied());
     let kind = usize::from(!planned.turns());
-    if rests.len() < LEAST || highest - lowest < WIDE[kind] {
+    let places = 1 + at.windows(2).filter(|two| two[1] - two[0] > 0.05 * (highest - lowest)).count();
+    if rests.len() < LEAST || places < PLACES || highest - lowest < WIDE[kind] {
         return None;
     }
     let Line { slope: share, square, left } = line(&at, &off);
     let left: f64 = left.iter().map(|left| left * left).sum();
     let spread = share * share * square + left;
+    let agrees = |some: &[[f64; 3]]| {
+        let [at, off] = of(some);
+        (line(&at, &off).slope / share - 1.0).abs() < ALIKE
+    };
+    let from = |way: f64| rests.iter().filter(|rest| way * rest[2] > 0.0).copied().collect::<Vec<[f64; 3]>>();
+    let middle = rests.len() / 2;
+    if !agrees(&from(1.0)) || !agrees(&from(-1.0)) || !agrees(&rests[..=middle]) || !agrees(&rests[middle..])
+    {
+        return None;
+    }
     let counts = share.abs() >= SHARE && share.abs() * (highest - lowest) >= COUNTS[kind];
     (counts && left <= (1.0 - EXPLAINS) * spread).then(|| {
         format!(
             "{} was measured {:.3} times as far as its plan from rest to rest ({} rests): is a gear, a lever or an encoder's scale off by \
-             {:.1} %? A fit takes that for a dead band, and a correction drives the joint off by it",
+             {:.1} %, or does its load hold it off? A fit takes that for a dead band, and a correction drives a joint off whose scale it is",
             planned.name(),
             1.0 + share,
             rests.len(),
@@ -51,10 +68,10 @@ pub(super) fn scaled(planned: &Track, measured: &Track) -> Option<String> {
     })
 }
 
-/// Where a plan rests at another place than before: from when to when its last part lasts, s, and where.
-fn rests(planned: &Track) -> Vec<[f64; 3]> {
+/// Where a plan rests at another place than before: from when to when its last part lasts, s, where, and from which side it came.
+fn rests(planned: &Track) -> Vec<[f64; 4]> {
     let (t_s, q) = (planned.t_s(), planned.position());
-    let mut found: Vec<[f64; 3]> = Vec::new();
+    let mut found: Vec<[f64; 4]> = Vec::new();
     let mut from = 0;
     for k in 1..=q.len() {
         if q.get(k).is_some_and(|next| (next - q[from]).abs() <= STANDS) {
@@ -63,7 +80,8 @@ fn rests(planned: &Track) -> Vec<[f64; 3]> {
         let last_s = t_s[k - 1];
         let elsewhere = found.last().is_none_or(|before| (before[2] - q[from]).abs() > STANDS);
         if last_s - t_s[from] >= RESTS_S && elsewhere {
-            found.push([last_s - LAST_S, last_s, q[from]]);
+            let way = found.last().map_or(0.0, |before| q[from] - before[2]);
+            found.push([last_s - LAST_S, last_s, q[from], way]);
         }
         from = k;
     }

@@ -102,3 +102,24 @@ fn set_values_that_are_written_now_and_then_hold_until_the_next() {
         assert!(remarks.contains("held until the next"), "{refreshed}: {remarks}");
     }
 }
+
+#[test]
+fn what_an_observer_estimates_gives_way_to_what_was_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = |t_s: f64| 10.0 * (0.5 * t_s).sin();
+    let text = table((100, 1), set, written);
+    let (before, _) = starts(folder.path(), &text);
+    let text: String = text
+        .lines()
+        .map(|line| {
+            if line.starts_with('t') {
+                format!("{line},boom_estimate_deg\n")
+            } else {
+                format!("{line},1.5\n")
+            }
+        })
+        .collect();
+    let (beside, _) = starts(folder.path(), &text);
+    assert_eq!(before["joints"][0]["tracking_error"], beside["joints"][0]["tracking_error"]);
+    assert!(beside["remarks"].to_string().contains("says the same of a joint"), "{}", beside["remarks"]);
+}

@@ -123,7 +123,7 @@ fn a_slow_filter_of_set_values_is_no_clock_and_hides_none() {
 #[test]
 fn clocks_that_run_apart_are_told_and_joints_that_lag_each_by_itself_are_not() {
     let t_s: Vec<f64> = (0..6000).map(|k| f64::from(k) * 0.01).collect();
-    let plan = |joint: f64, t: f64| 0.4 * ((0.5 + 0.1 * joint) * t).sin() * (0.13 * t).cos();
+    let plan = |joint: f64, t: f64| 0.4 * ((0.5 + 0.1 * joint) * t).sin() + 0.1 * (1.3 * t).cos();
     let series = |at_s: &dyn Fn(f64, f64) -> f64| {
         let track = |joint: u8| {
             let q = t_s.iter().map(|&t| plan(joint.into(), at_s(joint.into(), t))).collect();
