@@ -17,7 +17,7 @@ const RAMPS: [Rise; 3] = [Rise::Ramp(0.4), Rise::Ramp(0.8), Rise::Ramp(1.6)];
 const SHAPE: f64 = 0.03;
 /// Where no shape comes nearer than this to the middles, in mean squares of what one may lie off, none says when they began.
 const MOST_UNLIKE: f64 = 6.0;
-/// From a departure to the first middle, by the time from there to the next: what rises with the third power of time takes 2.3 times as long.
+/// From a departure to the first step, by the time from there to the next: what rises with the third power of time takes 2.3 times as long.
 const BEFORE: f64 = 2.3;
 /// Changes of more steps than this at a time, so many of them, tell how long a plan holds each value.
 const SEVERAL: f64 = 1.5;
@@ -49,9 +49,11 @@ pub(super) fn onset(
     let freedom = middles.len().saturating_sub(3).max(1) as f64;
     let unlike = (2.0 * least / freedom).max(1.0);
     if unlike > MOST_UNLIKE {
-        // The first value that is not that of the rest shows, and the time to it from the departure is some of that to the next one.
-        let [next_s, shows_s] = [middles[1].t_s, pair.t_s[first(pair, motion, step)?]];
-        return Some(Onset { at_s: shows_s, interval_s: [first_s - BEFORE * (next_s - first_s), shows_s] });
+        // What shows is its first step, and the time to that from the departure is some of that to the next one.
+        let changes = motion.samples.start.max(motion.segment.start + 1)..motion.segment.end;
+        let mut shown_s = changes.filter(|at| change(pair, motion, *at) > NONE * step).map(|at| pair.t_s[at]);
+        let (shows_s, next_s) = shown_s.next().zip(shown_s.next())?;
+        return Some(Onset { at_s: shows_s, interval_s: [shows_s - BEFORE * (next_s - shows_s), shows_s] });
     }
     for one in &mut likely {
         one.1 /= unlike;
