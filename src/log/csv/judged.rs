@@ -71,7 +71,7 @@ impl Judge {
         let answers = !whether || sample().all(|cell| says(cell, good) || says(cell, bad));
         let judges = whether || JUDGES.contains(&plain.as_str());
         let header = head.names[column].clone();
-        (judges && tells && answers).then(|| Self { column, is_opc, whether, bad, header })
+        (judges && tells && answers).then_some(Self { column, is_opc, whether, bad, header })
     }
 
     pub(super) fn is_bad(&self, row: &ByteRecord) -> bool {

@@ -136,9 +136,9 @@ fn off(plan: &Track, came: &Track) -> f64 {
             instants().map(|(t_s, q)| (q - plan.held_after(&mut cursor, t_s - late_s).position).powi(2));
         squares.sum::<f64>()
     };
-    let lates_s = std::iter::successors(Some(0.0), |late_s| Some(late_s + LATER_S))
+    let delays_s = std::iter::successors(Some(0.0), |late_s| Some(late_s + LATER_S))
         .take_while(|late_s| *late_s <= LATEST_S);
-    (lates_s.map(at).fold(f64::INFINITY, f64::min) / instants().count().max(1) as f64).sqrt()
+    (delays_s.map(at).fold(f64::INFINITY, f64::min) / instants().count().max(1) as f64).sqrt()
 }
 
 /// A track that holds each of its values until the next one, the last to an instant, with a sample in every so many seconds: a step is
