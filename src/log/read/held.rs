@@ -1,7 +1,7 @@
 //! Plans that are written only where they change, as historians and subscriptions write them: between two values the
 //! first one holds.
 
-use super::{quality::is_of_gaps, recording::Command, select_topics::Choice};
+use super::{quality::is_of_gaps, recording::Command, repeated::LONGEST_S, select_topics::Choice};
 use crate::{
     math::median,
     remark::{Code, Remarks},
@@ -17,12 +17,13 @@ const REPEATS: usize = 20;
 /// A value after a silence is no farther from the one before than so many of the steps elsewhere: more was lost.
 const STEPS: f64 = 3.0;
 
-/// A plan whose values are this far apart in the median, s, and so many times as far as those of the measurement beside it, is one of
-/// set values: no planner goes on smoothly between them.
-const APART_S: f64 = 0.3;
+/// A plan whose values are farther apart in the median than samples of a motion are held, and so many times as far as those of the
+/// measurement beside it, may be one of set values.
 const SPARSER: f64 = 5.0;
-/// If the measurement follows steps so much better than lines between the values, at the delay that is best for each, s: root mean square.
-const BETTER: f64 = 0.8;
+/// It is if a joint has gone less than this share of the way to a value when that comes: no machine answers what is yet to come. A delay
+/// as long as values are apart looks so, too; then lines between them, each at its best delay, s, are off by so many times less.
+const BEFORE: f64 = 0.1;
+const LESS: f64 = 2.0;
 const LATEST_S: f64 = 2.0;
 const LATER_S: f64 = 0.05;
 /// Instants at which that is asked.
@@ -102,15 +103,17 @@ fn of_set_values(planned: &mut Series, measured: &Series, remarks: &mut Remarks)
         };
         let between_s = beside.sample_interval_s();
         let gaps_s: Vec<f64> = track.t_s().windows(2).map(|two| two[1] - two[0]).collect();
-        if gaps_s.is_empty() || median(gaps_s) < APART_S.max(SPARSER * between_s) {
+        if gaps_s.is_empty() || median(gaps_s) < LONGEST_S.max(SPARSER * between_s) {
             continue;
         }
         let until_s = beside.t_s().last().copied().unwrap_or_default();
         let lines =
             Track::of(track.kind(), track.name(), track.t_s().to_vec(), track.position().to_vec(), &[]);
         let both = lines.ok().zip(in_steps(track, between_s, until_s));
-        if let Some((_, held)) = both.filter(|(lines, held)| off(held, beside) < BETTER * off(lines, beside))
-        {
+        let steps = |(lines, held): &(Track, Track)| {
+            gone_before(track, beside) < BEFORE && off(held, beside) < LESS * off(lines, beside)
+        };
+        if let Some((_, held)) = both.filter(steps) {
             values += track.len() as u64;
             names.push(track.name().to_owned());
             *track = held;
@@ -121,12 +124,23 @@ fn of_set_values(planned: &mut Series, measured: &Series, remarks: &mut Remarks)
          until the next; if the machine went on smoothly between them, put the plan into a log of its own and join it \
          (hydrotrace join)",
         names.join(", "),
-        APART_S
+        LONGEST_S
     );
     remarks.add(Code::Guessed, values, message);
 }
 
-/// What a measurement is off a plan that it follows at the best delay, root mean square: no machine answers what is yet to come.
+/// Which share of the way from each value to the next a joint has gone when that comes.
+fn gone_before(plan: &Track, came: &Track) -> f64 {
+    let (mut gone, mut asked) = (0.0, 0.0);
+    for (next_s, two) in plan.t_s().iter().skip(1).zip(plan.position().windows(2)) {
+        let change = two[1] - two[0];
+        gone += change * (came.held_at(*next_s).position - two[0]);
+        asked += change * change;
+    }
+    if asked > 0.0 { gone / asked } else { 0.0 }
+}
+
+/// What a measurement is off a plan that it follows at the best delay, root mean square.
 fn off(plan: &Track, came: &Track) -> f64 {
     let step = came.len().div_ceil(INSTANTS).max(1);
     let instants = || came.t_s().iter().zip(came.position()).step_by(step);

@@ -15,7 +15,7 @@ const MOST: f64 = 0.95;
 const UNEVEN: usize = 5;
 /// Longest time for which a sample of a plan is held, s; of what was sent, which goes from target to target only where its plan
 /// does.
-const LONGEST_S: f64 = 0.3;
+pub(super) const LONGEST_S: f64 = 0.3;
 const LONGEST_SENT_S: f64 = 0.5;
 /// Rows that are looked at first.
 const HEAD: usize = 4000;

@@ -22,37 +22,34 @@ const SHARE: f64 = 0.008;
 const COUNTS: [f64; 2] = [0.3 * DEGREE_RAD, 3e-3];
 const EXPLAINS: f64 = 0.97;
 
+/// A rest of a plan at another place than the one before.
+#[derive(Clone, Copy)]
+struct Rest {
+    place: f64,
+    /// From which side it was reached; 0 of the first.
+    way: f64,
+    /// What was measured in the mean of its last part, less the place.
+    off: f64,
+}
+
 /// What is to be said of a joint whose errors at rest grow with its angle.
 pub(super) fn scaled(planned: &Track, measured: &Track) -> Option<String> {
-    let mut rests: Vec<[f64; 3]> = rests(planned)
-        .into_iter()
-        .filter_map(|[from_s, to_s, at, way]| {
-            let within = measured.t_s().partition_point(|t_s| *t_s < from_s)
-                ..measured.t_s().partition_point(|t_s| *t_s <= to_s);
-            let came = measured.position().get(within)?;
-            (!came.is_empty()).then(|| [at, came.iter().sum::<f64>() / came.len() as f64 - at, way])
-        })
-        .collect();
-    rests.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let of = |rests: &[[f64; 3]]| [0, 1].map(|of| rests.iter().map(|rest| rest[of]).collect::<Vec<f64>>());
-    let [at, off] = of(&rests);
-    let [lowest, highest] = range(at.iter().copied());
+    let mut rests = rests(planned, measured);
+    rests.sort_by(|a, b| a.place.total_cmp(&b.place));
+    let [lowest, highest] = range(rests.iter().map(|rest| rest.place));
     let kind = usize::from(!planned.turns());
-    let places = 1 + at.windows(2).filter(|two| two[1] - two[0] > 0.05 * (highest - lowest)).count();
+    let apart = |two: &&[Rest]| two[1].place - two[0].place > 0.05 * (highest - lowest);
+    let places = 1 + rests.windows(2).filter(apart).count();
     if rests.len() < LEAST || places < PLACES || highest - lowest < WIDE[kind] {
         return None;
     }
-    let Line { slope: share, square, left } = line(&at, &off);
+    let Line { slope: share, square, left } = errors(&rests);
     let left: f64 = left.iter().map(|left| left * left).sum();
     let spread = share * share * square + left;
-    let agrees = |some: &[[f64; 3]]| {
-        let [at, off] = of(some);
-        (line(&at, &off).slope / share - 1.0).abs() < ALIKE
-    };
-    let from = |way: f64| rests.iter().filter(|rest| way * rest[2] > 0.0).copied().collect::<Vec<[f64; 3]>>();
-    let middle = rests.len() / 2;
-    if !agrees(&from(1.0)) || !agrees(&from(-1.0)) || !agrees(&rests[..=middle]) || !agrees(&rests[middle..])
-    {
+    let agrees = |some: &[Rest]| (errors(some).slope / share - 1.0).abs() < ALIKE;
+    let from = |way: f64| rests.iter().filter(|rest| way * rest.way > 0.0).copied().collect::<Vec<Rest>>();
+    let (below, above) = (&rests[..=rests.len() / 2], &rests[rests.len() / 2..]);
+    if ![&from(1.0), &from(-1.0), below, above].into_iter().all(agrees) {
         return None;
     }
     let counts = share.abs() >= SHARE && share.abs() * (highest - lowest) >= COUNTS[kind];
@@ -68,24 +65,36 @@ pub(super) fn scaled(planned: &Track, measured: &Track) -> Option<String> {
     })
 }
 
-/// Where a plan rests at another place than before: from when to when its last part lasts, s, where, and from which side it came.
-fn rests(planned: &Track) -> Vec<[f64; 4]> {
+/// The line of what is measured off over the place.
+fn errors(rests: &[Rest]) -> Line {
+    let of = |number: fn(&Rest) -> f64| rests.iter().map(number).collect::<Vec<f64>>();
+    line(&of(|rest| rest.place), &of(|rest| rest.off))
+}
+
+fn rests(planned: &Track, measured: &Track) -> Vec<Rest> {
     let (t_s, q) = (planned.t_s(), planned.position());
-    let mut found: Vec<[f64; 4]> = Vec::new();
-    let mut from = 0;
+    let (mut found, mut before, mut from) = (Vec::new(), None, 0);
     for k in 1..=q.len() {
         if q.get(k).is_some_and(|next| (next - q[from]).abs() <= STANDS) {
             continue;
         }
-        let last_s = t_s[k - 1];
-        let elsewhere = found.last().is_none_or(|before| (before[2] - q[from]).abs() > STANDS);
-        if last_s - t_s[from] >= RESTS_S && elsewhere {
-            let way = found.last().map_or(0.0, |before| q[from] - before[2]);
-            found.push([last_s - LAST_S, last_s, q[from], way]);
+        let (place, last_s) = (q[from], t_s[k - 1]);
+        let way = before.map_or(0.0, |before: f64| place - before);
+        if last_s - t_s[from] >= RESTS_S && (before.is_none() || way.abs() > STANDS) {
+            before = Some(place);
+            let off = mean_within(measured, [last_s - LAST_S, last_s]).map(|came| came - place);
+            found.extend(off.map(|off| Rest { place, way, off }));
         }
         from = k;
     }
     found
+}
+
+/// Mean of what was measured between two instants, s.
+fn mean_within(measured: &Track, [from_s, to_s]: [f64; 2]) -> Option<f64> {
+    let at = |end_s: f64| measured.t_s().partition_point(|t_s| *t_s < end_s);
+    let came = measured.position().get(at(from_s)..at(to_s))?;
+    (!came.is_empty()).then(|| came.iter().sum::<f64>() / came.len() as f64)
 }
 
 #[cfg(test)]
