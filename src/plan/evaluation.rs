@@ -99,6 +99,12 @@ impl PlanEvaluation {
         })
     }
 
+    /// How many times as slow all broken limits are kept; `None` if none is broken, or one that time does not mend.
+    pub fn slower(&self) -> Option<f64> {
+        let all: Option<Vec<f64>> = self.broken().into_iter().map(Margin::slower).collect();
+        all?.into_iter().reduce(f64::max)
+    }
+
     /// Limits that are broken, the worst first.
     pub fn broken(&self) -> Vec<&Margin> {
         let mut broken: Vec<&Margin> = self.margins.iter().filter(|margin| margin.broken()).collect();

@@ -105,6 +105,16 @@ pub struct Margin {
 pub const KEPT_SHARE: f64 = 1.0 + 1e-9;
 
 impl Margin {
+    /// How many times as slow a plan comes to the limit as it is now; `None` of what time alone does not mend.
+    pub fn slower(&self) -> Option<f64> {
+        match self.limit {
+            Limit::Speed | Limit::RodSpeed | Limit::PumpFlow | Limit::ToolSpeed => Some(self.share),
+            Limit::Acceleration => Some(self.share.sqrt()),
+            Limit::Jerk => Some(self.share.cbrt()),
+            Limit::Position | Limit::Torque | Limit::RodForce => None,
+        }
+    }
+
     /// Whether the limit is broken.
     pub fn broken(&self) -> bool {
         self.share > KEPT_SHARE

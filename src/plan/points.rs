@@ -12,6 +12,9 @@ pub const POINTS_HZ: [f64; 5] = [25.0, 50.0, 100.0, 200.0, 400.0];
 /// Share by which a curve through points may lie beyond a limit that the plan lies at.
 pub const BETWEEN: f64 = 1e-3;
 
+/// No log is written of a longer motion, s, nor a trajectory sent.
+const LONGEST_S: f64 = 1e5;
+
 /// A last step that is a smaller share of a whole one tells no jerk.
 const SHORT: f64 = 0.25;
 
@@ -31,6 +34,9 @@ impl Setup {
     /// The limit that the curve of a controller breaks most, by more than [`BETWEEN`], through points that a motion passes so
     /// often; `None` if none does.
     pub fn between(&self, motion: &Motion, points_hz: f64) -> Option<(Interpolation, Margin)> {
+        if motion.duration_s() > LONGEST_S {
+            return None;
+        }
         let step_s = 1.0 / points_hz;
         let points = states(motion, step_s);
         // The last step ends with the motion.

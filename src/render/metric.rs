@@ -91,6 +91,21 @@ impl Units {
         self.0.is_none()
     }
 
+    /// A mean over all joints, with its unit; of both kinds no unit of one is true.
+    pub(super) fn mean(self, value: f64) -> String {
+        self.0.map_or_else(|| format!("{value:.4} rad and m"), |kind| position(kind, value))
+    }
+
+    /// The number of it alone.
+    pub(super) fn mean_number(self, value: f64) -> String {
+        self.0.map_or_else(|| format!("{value:.4}"), |kind| number(Dimension::Position, kind, value))
+    }
+
+    /// The heading of such numbers.
+    pub(super) fn mean_heading(self, heading: &str) -> String {
+        if self.mixed() { format!("{heading} rad and m") } else { self.heading(heading, Dimension::Position) }
+    }
+
     /// `peak deg`.
     pub(super) fn heading(self, heading: &str, dimension: Dimension) -> String {
         let kind = if dimension.is_of_joint() { self.0 } else { Some(Turns) };

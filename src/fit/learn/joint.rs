@@ -32,8 +32,9 @@ const CAP_RAD: f64 = 1.5 * DEGREE_RAD;
 
 const CAP_BY_ERROR: f64 = 1.25;
 
-/// Frequency of what is left of a finished correction by half, Hz, and by that of what is learnt.
-const FINISHED_HZ: f64 = 1.2;
+/// Frequency of what is left of a finished correction by half, Hz, of a calm joint and of one that oscillates, and by that of what is
+/// learnt.
+const FINISHED_HZ: [f64; 2] = [1.8, 1.2];
 
 const FINISHED_BY_CUT_OFF: f64 = 2.0;
 
@@ -308,7 +309,9 @@ impl<'a> Joint<'a> {
 
 /// Frequency of what is left of a finished correction by half, Hz.
 fn finished_hz(manner: &Manner) -> f64 {
-    FINISHED_HZ.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz)
+    let [calm, other] = FINISHED_HZ;
+    let least = if manner.character == Character::Calm { calm } else { other };
+    least.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz)
 }
 
 /// Whether a run has little to do with the plan: wrong sign, zero, unit or name, or a joint that is stuck. One that moves,

@@ -352,11 +352,7 @@ fn quickened(setup: &Setup, plan: PlanEvaluation) -> PlanEvaluation {
 
 /// How much slower a plan is at the limit that it breaks: enough for rates, of torques and forces only a beginning.
 fn factor(margin: &Margin) -> f64 {
-    match margin.limit {
-        Limit::Acceleration => margin.share.sqrt(),
-        Limit::Jerk => margin.share.cbrt(),
-        _ => margin.share,
-    }
+    margin.slower().unwrap_or(margin.share)
 }
 
 /// Arrivals at the key points, s, and the free points between them.

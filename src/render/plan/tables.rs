@@ -355,8 +355,13 @@ fn mended(margin: &Margin, nearest: &PlanEvaluation) -> Option<String> {
 fn longest(longest_s: f64, nearest: &PlanEvaluation) -> Option<String> {
     let longest = nearest.interval_s.iter().filter(|s| **s > longest_s * TIGHT).count();
     let all = nearest.interval_s.len();
+    let enough = nearest.slower().map_or(String::new(), |by| {
+        format!(": with intervals up to {:.0} s these limits are kept", (by * longest_s).ceil())
+    });
     (longest > 0).then(|| {
-        format!("{longest} of {all} intervals have the longest duration allowed, {longest_s} s (interval_s)")
+        format!(
+            "{longest} of {all} intervals have the longest duration allowed, {longest_s} s (interval_s){enough}"
+        )
     })
 }
 

@@ -6,10 +6,9 @@ use crate::{
     render::{
         fit::shared,
         kit::{Block, Check, Id, Mark, Section, Sentence, counted, mm, optional, share},
-        metric::position,
+        metric::{Units, position},
         plan,
     },
-    series::JointKind,
     workflow::{
         plan::MarginEntry,
         replan::{self, Checks, Finding, JointTrust, Level, Outside, Reason, TooFast, Verdict},
@@ -19,16 +18,16 @@ use crate::{
 /// The section of a document.
 pub(super) const ID: Id = Id("checks");
 
-/// The verdict and every check; `kind` is that in whose unit means over the joints are told.
-pub(super) fn section(checks: &Checks, kind: JointKind) -> Section {
-    Section::new(ID, "Safe to send?", [Block::from(Sentence::finding(verdict(checks))), list(checks, kind)])
+/// The verdict and every check; `units` says how means over the joints are told.
+pub(super) fn section(checks: &Checks, units: Units) -> Section {
+    Section::new(ID, "Safe to send?", [Block::from(Sentence::finding(verdict(checks))), list(checks, units)])
 }
 
-pub(super) fn list(checks: &Checks, kind: JointKind) -> Block {
+pub(super) fn list(checks: &Checks, units: Units) -> Block {
     let one = |check: &replan::Check| Check {
         mark: mark(check.level),
         name: name(&check.finding),
-        found: words(check.level, &check.finding, kind),
+        found: words(check.level, &check.finding, units),
     };
     Block::Checks(checks.list.iter().map(one).collect())
 }
@@ -130,8 +129,8 @@ fn together(limit: &SharedLimit, asked: f64, at_s: f64) -> String {
     )
 }
 
-fn words(level: Level, finding: &Finding, kind: JointKind) -> String {
-    let shown = |rad: f64| position(kind, rad);
+fn words(level: Level, finding: &Finding, units: Units) -> String {
+    let shown = |rad: f64| units.mean(rad);
     let good = level == Level::Good;
     match finding {
         Finding::Ends { .. } if good => "It begins and ends where the plan does.".to_owned(),

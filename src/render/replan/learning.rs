@@ -4,20 +4,28 @@ use crate::{
     fit::{AFTER_S, Step},
     render::{
         kit::{Column, Id, NONE, Section, Sentence, Table, argument, counted, optional},
-        metric::{Units, number, position, unit},
+        metric::{Units, position, unit},
     },
     replay::Dimension,
-    series::JointKind::{self, Slides, Turns},
+    series::{
+        JointKind::{self, Slides, Turns},
+        Track,
+    },
     workflow::replan::{Checks, Decision, Finding, JointCommand, KeepReason, PastRun, Replanned},
 };
 
 /// Less of what comes after a plan hides an overshoot, s.
 const LEAST_AFTER_S: f64 = 1.0;
 
+/// How means over the joints are told.
+pub(super) fn units(replanned: &Replanned) -> Units {
+    Units::of(replanned.plan.tracks.iter().map(Track::kind))
+}
+
 /// What to keep, where nothing more is to be gained, and why.
 pub(super) fn kept(replanned: &Replanned) -> Option<String> {
     let Decision::Keep { run, because, best_rad, last_rad } = &replanned.past.decision else { return None };
-    let shown = |rad: f64| position(replanned.plan.common_kind(), rad);
+    let shown = |rad: f64| units(replanned).mean(rad);
     let (best, last) = (shown(*best_rad), shown(*last_rad));
     let kept = match replanned.past.runs.get(*run) {
         Some(run) if run.corrected => format!("Keep the command of {}: its mean peak is {best}", run.log),
@@ -121,8 +129,8 @@ pub(super) fn runs(replanned: &Replanned) -> Option<Section> {
     if runs.len() < 2 && runs.iter().all(|run| run.promised.is_none()) {
         return None;
     }
-    let kind = replanned.plan.common_kind();
-    let shown = |rad: f64| number(Dimension::Position, kind, rad);
+    let units = units(replanned);
+    let shown = |rad: f64| units.mean_number(rad);
     let row = |run: &PastRun| {
         vec![
             run.log.clone(),
@@ -132,9 +140,8 @@ pub(super) fn runs(replanned: &Replanned) -> Option<Section> {
             optional(run.mean_peak_rad, shown),
         ]
     };
-    let units = Units::of(std::iter::once(kind));
-    let columns = ["promised", "90 % below", "measured"]
-        .map(|heading| Column::numbers(units.heading(heading, Dimension::Position)));
+    let columns =
+        ["promised", "90 % below", "measured"].map(|heading| Column::numbers(units.mean_heading(heading)));
     let columns = ["run", "sent"].map(Column::words).into_iter().chain(columns);
     Some(
         Section::new(

@@ -37,7 +37,7 @@ fn answer(replanned: &Replanned, sending: &Section) -> Markup {
     };
     html! {
         (card(class, "Verdict", &checks::verdict(&checks), &body))
-        (blocks(&[checks::list(&checks, replanned.plan.common_kind())]))
+        (blocks(&[checks::list(&checks, learning::units(replanned))]))
         (headed(sending))
     }
 }

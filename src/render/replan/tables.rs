@@ -3,15 +3,19 @@
 use super::{checks, learning};
 use crate::{
     log::Topics,
+    math::mean,
     render::{
         kit::{Block, Column, Document, Fact, Id, NONE, Section, Sentence, Table, fact, optional, some_of},
-        metric::{Units, lengths_as_angles, number, position, unit},
+        metric::{Units, number, position, unit},
     },
     replay::Dimension,
     series::{JointKind, Track},
     task::Objective,
-    workflow::replan::{Checks, Commanded, HeldTo, Origin, Predicted, Replanned},
+    workflow::replan::{Checks, Commanded, HeldTo, Origin, Predicted, PredictedTransition, Replanned},
 };
+
+/// Predicted transitions of joints of a kind.
+type PeaksOf<'a> = &'a mut dyn Iterator<Item = &'a PredictedTransition>;
 
 /// The section of what is expected.
 pub(super) const EXPECTED: Id = Id("expected");
@@ -35,9 +39,7 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
             Id::SUMMARY,
             verdict.into_iter().chain([Sentence::finding(learnt)]).chain(stays),
         ))
-        .with(
-            checks::section(&Checks::of(replanned), replanned.plan.common_kind()).with_all(mixed(replanned)),
-        )
+        .with(checks::section(&Checks::of(replanned), learning::units(replanned)))
         .with(Section::new(EXPECTED, "Expected", [expected(replanned)]).with(Sentence::note(margin)))
         .with(Section::new(Id::OTHER, "What changes", [Block::Facts(levers(replanned))]));
     document.sections.extend(learning::runs(replanned));
@@ -60,15 +62,6 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
     document.remarked(&replanned.remarks)
 }
 
-/// What a mean is over joints of both kinds.
-fn mixed(replanned: &Replanned) -> Option<Sentence> {
-    let counts = lengths_as_angles(replanned.plan.tracks.iter().map(Track::kind))?;
-    let note = format!(
-        "Some joints turn and some slide: in what is told of them together {counts}, as much as a radian as a metre."
-    );
-    Some(Sentence::note(note))
-}
-
 fn percent(now: f64, then: f64) -> String {
     if now > 0.0 { format!("{:+.0} %", 100.0 * (then / now - 1.0)) } else { NONE.to_owned() }
 }
@@ -76,18 +69,32 @@ fn percent(now: f64, then: f64) -> String {
 fn expected(replanned: &Replanned) -> Table {
     let (before, after) = (&replanned.before, &replanned.after);
     let now = &before.predicted;
-    let kind = replanned.plan.common_kind();
-    let shown = |rad: f64| number(Dimension::Position, kind, rad);
-    let error = |name: &str, measured: Option<f64>, of: fn(&Predicted) -> f64| {
-        let change = percent(measured.unwrap_or(of(now)), of(after));
-        let name = format!("{name} {}", unit(Dimension::Position, kind));
-        vec![name, optional(measured, shown), shown(of(now)), shown(of(after)), change]
-    };
+    let kind_of = |joint: &str| replanned.plan.track(joint).map_or(JointKind::Turns, Track::kind);
+    // Of each kind on its own: a mean over both has no unit.
+    let errors = before.measured_peaks.iter().flat_map(|of| {
+        let shown = |rad: f64| number(Dimension::Position, of.kind, rad);
+        let error = |name: &str, measured: Option<f64>, peak: fn(PeaksOf<'_>) -> f64| {
+            let [now, after] = [now, after].map(|predicted| {
+                peak(&mut predicted.transitions.iter().filter(|t| kind_of(&t.joint) == of.kind))
+            });
+            let change = percent(measured.unwrap_or(now), after);
+            let name = format!("{name} {}", unit(Dimension::Position, of.kind));
+            vec![name, optional(measured, shown), shown(now), shown(after), change]
+        };
+        [
+            error("mean transition peak", of.mean_rad, |all| {
+                mean(&all.map(|t| t.expected_peak_rad).collect::<Vec<f64>>())
+            }),
+            error("  mean below in 9 of 10 runs", None, |all| {
+                mean(&all.map(|t| t.peak_margin_rad).collect::<Vec<f64>>())
+            }),
+            error("worst transition peak", of.worst_rad, |all| {
+                all.map(|t| t.expected_peak_rad).fold(0.0, f64::max)
+            }),
+        ]
+    });
     let count = |p: &Predicted| p.transitions.len();
-    let mut rows = vec![
-        error("mean transition peak", before.measured_mean_peak_rad, |p| p.mean_peak_rad),
-        error("  mean below in 9 of 10 runs", None, |p| p.mean_peak_margin_rad),
-        error("worst transition peak", before.measured_worst_peak_rad, |p| p.worst_peak_rad),
+    let others = [
         vec![
             "starts + reversals".into(),
             before.measured_transitions.to_string(),
@@ -103,6 +110,7 @@ fn expected(replanned: &Replanned) -> Table {
             percent(before.duration_s, replanned.duration_s),
         ],
     ];
+    let mut rows: Vec<Vec<String>> = errors.chain(others).collect();
     if let (Some(was), Some(evaluation)) = (&replanned.objectives_before, &replanned.evaluation) {
         let is = evaluation.objectives;
         rows.extend(Objective::OF_PLAN.iter().filter(|k| **k != Objective::Duration).map(|&k| {
@@ -170,6 +178,7 @@ fn held_row(held: &HeldTo, units: Units) -> Vec<String> {
         Origin::Task => "the task",
         Origin::Fitted => "the fit",
         Origin::Shown => "values reached",
+        Origin::Asked => "asked for last",
     };
     let number = |dimension: Dimension, value: f64| {
         if value.is_finite() { units.cell(dimension, held.kind, value) } else { NONE.into() }

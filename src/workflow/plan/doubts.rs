@@ -10,6 +10,10 @@ use crate::{
 /// Share by which a plan has to be above a ceiling to be told: less is not seen in what is printed.
 const ABOVE: f64 = 1e-3;
 
+/// Intervals are the shortest up to this times it, and a limit below this share holds no plan.
+const SHORTEST: f64 = 1.01;
+const FAR: f64 = 0.6;
+
 impl PlanRequest {
     /// Remarks on a plan of the task: what a controller's curve breaks through the points of its trajectory.
     ///
@@ -44,7 +48,28 @@ impl PlanRequest {
             );
             remarks.add(Code::BeyondLimit, 1, message);
         }
+        if let Some(message) = self.unlimited(plan) {
+            remarks.add(Code::InactiveBound, 1, message);
+        }
         Ok(remarks)
+    }
+
+    /// What is said of a plan that nothing but the shortest interval keeps from being faster.
+    fn unlimited(&self, plan: &PlanEvaluation) -> Option<String> {
+        let shortest_s = self.task.interval_s[0];
+        plan.interval_s.iter().all(|interval_s| *interval_s <= SHORTEST * shortest_s).then_some(())?;
+        let rates = plan.margins.iter().filter(|margin| margin.limit != Limit::Position);
+        let nearest = match rates.max_by(|a, b| a.share.total_cmp(&b.share)) {
+            Some(margin) if margin.share > FAR => return None,
+            Some(margin) => {
+                format!("the nearest limit is {} at {:.0} %", margin.limit.name(), 100.0 * margin.share)
+            }
+            None => "no limit of speed, acceleration, jerk or load is known of any joint".to_owned(),
+        };
+        Some(format!(
+            "nothing but the shortest interval that the task allows, {shortest_s} s (interval_s), keeps the plan from being faster; \
+             {nearest}: are the key points in the unit that the task says, and are limits given?"
+        ))
     }
 
     /// Ceilings that a plan is above, and by what share.

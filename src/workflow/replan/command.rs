@@ -17,6 +17,11 @@ use crate::{
 /// Shares that are tried of a correction that breaks a limit of its joint or of the arm.
 const SHARES: [f64; 6] = [0.97, 0.9, 0.75, 0.5, 0.25, 0.0];
 
+/// Where a joint gets this share or less, smaller steps are tried as a whole: what the plan leaves of a pump or of the tool's speed
+/// is dealt anew to each.
+const LITTLE: f64 = 0.25;
+const SMALLER: [f64; 2] = [0.5, 0.25];
+
 /// Times that what rods, pump and tool leave is dealt anew.
 const ROUNDS: usize = 4;
 
@@ -102,12 +107,24 @@ pub struct Commanded {
     pub hunting: usize,
     /// The limits of the task's arm; empty without a task.
     pub margins: Vec<Margin>,
+    /// Share of the usual step that was taken, and the limit that more of it would break, where that is less than one.
+    pub step: Option<(f64, Limit)>,
 }
 
 impl Commanded {
     /// Whether it differs from the plan.
     pub fn applied(&self) -> bool {
         self.joints.iter().any(JointCommand::applied)
+    }
+
+    /// The limit that leaves a joint little of its correction.
+    fn bound(&self) -> Option<Limit> {
+        self.joints.iter().find(|joint| joint.share <= LITTLE)?.because
+    }
+
+    /// Corrections that are applied, each by its share.
+    fn applied_in_all(&self) -> f64 {
+        self.joints.iter().filter(|joint| joint.applied()).map(|joint| joint.share).sum()
     }
 }
 
@@ -124,13 +141,40 @@ fn near(planned: &[[f64; 4]], runs: &[Trial], name: &str) -> [f64; 2] {
     range(sent.chain([lowest - beyond_rad, highest + beyond_rad]))
 }
 
-/// A command for a plan, by its runs and a fit. Limits of the joints are kept by construction; where the limits of the arm
-/// as a whole or of rods are not, corrections are made smaller until they are.
+/// A command for a plan, by its runs and a fit: of steps of several sizes the one of which most is applied, where limits leave
+/// little of the whole.
 ///
 /// # Errors
 ///
 /// [`ReplanFailure`] for settings out of range.
 pub(super) fn commanded(
+    fit: &Fit,
+    subject: &Subject,
+    runs: &[Trial],
+    settings: Learning,
+) -> Result<Commanded, ReplanFailure> {
+    let mut best = of_step(fit, subject, runs, settings)?;
+    let Some(limit) = best.bound().filter(|_| settings.keep.is_none() && subject.setup.is_some()) else {
+        return Ok(best);
+    };
+    let mut most = best.applied_in_all();
+    for less in SMALLER {
+        let made = of_step(fit, subject, runs, Learning { gain: less * settings.gain, ..settings })?;
+        let applied = less * made.applied_in_all();
+        if applied > most {
+            (best, most) = (Commanded { step: Some((less, limit)), ..made }, applied);
+        }
+    }
+    Ok(best)
+}
+
+/// The command of one size of step. Limits of the joints are kept by construction; where the limits of the arm
+/// as a whole or of rods are not, corrections are made smaller until they are.
+///
+/// # Errors
+///
+/// [`ReplanFailure`] for settings out of range.
+fn of_step(
     fit: &Fit,
     subject: &Subject,
     runs: &[Trial],
@@ -228,7 +272,7 @@ pub(super) fn commanded(
         })
         .collect();
     let joints = joints(fit, plan, &series, &planned, &learnt, &shares)?;
-    Ok(Commanded { series, acceleration_rad_s2, joints, hunting: learnt.hunting, margins })
+    Ok(Commanded { series, acceleration_rad_s2, joints, hunting: learnt.hunting, margins, step: None })
 }
 
 /// Where no limit of a joint is known, a correction accelerates it to no more than this times what its plan does, or to this,

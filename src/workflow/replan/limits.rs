@@ -19,8 +19,10 @@ pub enum Origin {
     Task,
     /// The lower end of a fitted limit's interval.
     Fitted,
-    /// The largest value that the last plan asked for or the joint reached; nothing is known beyond it.
+    /// The largest value that the joint reached; nothing is known beyond it.
     Shown,
+    /// What the last plan asked for, where that is more than the joint reached.
+    Asked,
 }
 
 /// Limits of a joint in the search.
@@ -90,12 +92,15 @@ fn tightest(own: f64, fitted: Option<[Estimated; 2]>, asked: Option<f64>) -> (f6
     let Some(fitted) = fitted else { return (own, Origin::Task) };
     let low = |found: &Estimated| found.interval.filter(|_| found.identified).map(|interval| interval[0]);
     let identified = fitted.iter().filter_map(low).reduce(f64::min);
-    let reached = fitted.iter().filter_map(|found| found.lower_bound).chain(asked).reduce(f64::max);
+    let reached = fitted.iter().filter_map(|found| found.lower_bound).reduce(f64::max);
     // A fitted limit below what was reached is wrong by that much.
-    let (found, origin) = match (identified, reached) {
-        (Some(limit), _) => (limit, Origin::Fitted),
-        (None, Some(reached)) => (reached, Origin::Shown),
-        (None, None) => return (own, Origin::Task),
+    let (found, origin) = match (identified, reached, asked) {
+        (Some(limit), ..) => (limit, Origin::Fitted),
+        (None, reached, Some(asked)) if reached.is_none_or(|reached| asked > reached) => {
+            (asked, Origin::Asked)
+        }
+        (None, Some(reached), _) => (reached, Origin::Shown),
+        (None, None, _) => return (own, Origin::Task),
     };
     if found < own { (found, origin) } else { (own, Origin::Task) }
 }
@@ -120,7 +125,8 @@ mod tests {
 
     #[test]
     fn a_bound_holds_at_what_was_reached_or_asked_for_and_never_loosens_the_task() {
-        assert_eq!(tightest(1.0, Some([bound(0.2), bound(0.3)]), Some(0.35)), (0.35, Origin::Shown));
+        assert_eq!(tightest(1.0, Some([bound(0.2), bound(0.3)]), Some(0.35)), (0.35, Origin::Asked));
+        assert_eq!(tightest(1.0, Some([bound(0.2), bound(0.3)]), Some(0.25)), (0.3, Origin::Shown));
         assert_eq!(tightest(0.1, Some([bound(0.2), bound(0.3)]), None), (0.1, Origin::Task));
         assert_eq!(tightest(0.1, None, Some(0.05)), (0.1, Origin::Task));
     }

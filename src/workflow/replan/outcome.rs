@@ -11,10 +11,11 @@ use super::{
 use crate::{
     fit::Fit,
     log::{Recording, WriteError},
+    math::mean,
     plan::{PlanEvaluation, Timing},
     remark::{Code, Remarks},
-    replay::{Rules, replay},
-    series::{Series, moving_s},
+    replay::{Replay, Rules, replay},
+    series::{JointKind, Series, moving_s},
     task::{Ceilings, Objective, Objectives},
     workflow::{
         carried::{
@@ -42,19 +43,46 @@ pub struct Before {
     pub measured_mean_peak_rad: Option<f64>,
     /// The largest of them, rad.
     pub measured_worst_peak_rad: Option<f64>,
+    /// The same of joints that turn and of those that slide.
+    pub measured_peaks: Vec<MeasuredPeaks>,
     /// Of the plan, s; from the first to the last motion where its times are not known.
     pub duration_s: f64,
     /// Prediction for what was sent in it.
     pub predicted: Predicted,
 }
 
+/// Peak errors of the transitions of joints of one kind; of those that slide a metre stands for a radian.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct MeasuredPeaks {
+    /// How the joints move.
+    pub kind: JointKind,
+    /// Their mean, rad; null without any.
+    pub mean_rad: Option<f64>,
+    /// The largest, rad.
+    pub worst_rad: Option<f64>,
+}
+
+impl MeasuredPeaks {
+    fn of(kind: JointKind, found: &Replay) -> Self {
+        let own = found.transitions.iter().filter(|transition| transition.joint_kind == kind);
+        let peaks_rad: Vec<f64> = own.map(|transition| transition.peak_error).collect();
+        let mean_rad = (!peaks_rad.is_empty()).then(|| mean(&peaks_rad));
+        Self { kind, mean_rad, worst_rad: peaks_rad.into_iter().reduce(f64::max) }
+    }
+}
+
 impl Before {
     pub(super) fn of(recording: &Recording, last: &Last, predicted: Predicted, rules: &Rules) -> Self {
         let found = replay(&recording.pairs(), rules);
+        let is_of = |kind: &JointKind| last.plan.tracks.iter().any(|track| track.kind() == *kind);
+        let kinds = [JointKind::Turns, JointKind::Slides].into_iter().filter(is_of);
+        let measured_peaks = kinds.map(|kind| MeasuredPeaks::of(kind, &found)).collect();
         Self {
             measured_transitions: found.transitions.len(),
             measured_mean_peak_rad: found.mean_peak_rad(),
             measured_worst_peak_rad: found.peaks_rad().reduce(f64::max),
+            measured_peaks,
             duration_s: last.motion().map_or(last.duration_s, |motion| motion.duration_s()),
             predicted,
         }
@@ -228,11 +256,20 @@ pub(super) fn replanned(
             );
             remarks.add(Code::BeyondLimit, 1, message);
         }
+        if let Some((share, limit)) = command.step {
+            let message = format!(
+                "{:.0} % of the usual step is taken on all joints: more of it would break the limit of {}",
+                100.0 * share,
+                limit.name()
+            );
+            remarks.add(Code::BeyondLimit, 1, message);
+        }
         for joint in command.joints.iter().filter(|joint| joint.share < LEAST_SHARE) {
-            let why = if command.margins.is_empty() {
-                format!("accelerate it to more than {SHARPEST} times its plan, and no limit of it is known")
-            } else {
-                "break a limit".to_owned()
+            let why = match joint.because {
+                Some(limit) if !command.margins.is_empty() => format!("break the limit of {}", limit.name()),
+                _ => format!(
+                    "accelerate it to more than {SHARPEST} times its plan, and no limit of it is known"
+                ),
             };
             let message = format!(
                 "{:.0} % of the correction of {} is applied: more of it would {why}",
