@@ -148,7 +148,6 @@ impl CsvOptions {
     }
 
     /// These options, completed by those of `other`.
-    #[must_use]
     pub fn or(mut self, other: Self) -> Self {
         self.separator = self.separator.or(other.separator);
         self.decimal_comma = self.decimal_comma.or(other.decimal_comma);

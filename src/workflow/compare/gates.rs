@@ -182,14 +182,12 @@ pub struct GateResult {
 
 impl Gates {
     /// With a limit more, by its key, in SI units; a key of no limit adds none.
-    #[must_use]
     pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
         self.gates.extend(Row::find(key).zip(value));
         self
     }
 
     /// Where nothing can be compared, limits are kept.
-    #[must_use]
     pub fn with_empty_kept(self, empty_is_kept: bool) -> Self {
         Self { empty_is_kept, ..self }
     }
