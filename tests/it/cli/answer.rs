@@ -1,7 +1,7 @@
 //! A log without a verb.
 
 use crate::support::{
-    json, pasted, root, run_args, run_at_root, run_line, said, sample, scratch, stdout, timed,
+    fleet::smooth, json, pasted, root, run_args, run_at_root, run_line, said, sample, scratch, stdout, timed,
 };
 
 #[test]
@@ -46,10 +46,7 @@ fn a_pasted_line_reads_the_log_as_the_one_before_it_did() {
 #[test]
 fn a_log_of_the_tool_alone_suggests_what_can_be_done_with_it() {
     let folder = scratch();
-    let path_mm = |t_s: f64| {
-        let t = ((t_s - 2.0) / 4.0).clamp(0.0, 1.0);
-        500.0 * t * t * t * (10.0 + t * (6.0 * t - 15.0))
-    };
+    let path_mm = |t_s: f64| 500.0 * smooth((t_s - 2.0) / 4.0);
     let head = "time_s,planned_x_mm,planned_y_mm,planned_z_mm,measured_x_mm,measured_y_mm,measured_z_mm";
     let row = |t_s| format!("{t_s:.2},{:.4},0,800,{:.4},3,800", path_mm(t_s), path_mm(t_s - 0.2));
     let table = timed(head, (500, 0.02), row);
@@ -117,10 +114,7 @@ fn a_joint_that_alone_moves_or_alone_rests_is_named() {
 /// Five moves there and back, 12 deg each; the second signal comes so much later, s.
 fn moves(later_s: f64, until_s: f64, names: [&str; 2]) -> String {
     let at = |t_s: f64| {
-        let one = |k: u32| {
-            let s = ((t_s - 2.0 - 6.0 * f64::from(k)) / 3.0).clamp(0.0, 1.0);
-            (if k.is_multiple_of(2) { 12.0 } else { -12.0 }) * s * s * s * (10.0 + s * (6.0 * s - 15.0))
-        };
+        let one = |k: u32| [12.0, -12.0][k as usize % 2] * smooth((t_s - 2.0 - 6.0 * f64::from(k)) / 3.0);
         (0..5).map(one).sum::<f64>()
     };
     let mut table = format!("time_s,{},{},wrist_set_deg,wrist_act_deg\n", names[0], names[1]);

@@ -5,12 +5,11 @@ use std::{fmt::Write as _, fs, path::Path};
 
 use serde_json::Value;
 
-use crate::support::{hold_to_schema, run_line, said, scratch, timed};
+use crate::support::{fleet::smooth, hold_to_schema, run_line, said, scratch, timed};
 
 /// A stroke of 8 deg in 2 s, as a share of the way.
 fn stroke(t: f64) -> f64 {
-    let t = (0.5 * t).clamp(0.0, 1.0);
-    t * t * t * (10.0 + t * (6.0 * t - 15.0))
+    smooth(0.5 * t)
 }
 
 /// Six strokes there and back, 6 s apart from 2 s on, deg.

@@ -89,8 +89,7 @@ fn of_two_topics_whose_names_tell_nothing_the_other_is_the_other_side() {
         (options(&["/arm/generator"], &["/arm/encoders"], &[]), vec![]),
     ] {
         let recording = read_with(&log, &named);
-        assert_values(&recording.planned, plan);
-        assert_values(&recording.measured, measurement);
+        assert_usual(&recording);
         assert_eq!(codes(&recording.remarks), guesses);
     }
     add_joint_state(&mut log, "/arm/other", measurement);
@@ -109,8 +108,7 @@ fn joints_with_a_prefix_on_one_side_are_paired_and_that_is_said() {
     log.add(Channel::states("/joint_states"), 0..SAMPLES, prefixed);
     for names in [&[][..], &["a", "b"], &["ex1/a", "ex1_b_joint"]] {
         let recording = read_with(&log, &options(&[], &[], names));
-        assert_values(&recording.planned, plan);
-        assert_values(&recording.measured, measurement);
+        assert_usual(&recording);
         let remarks = recording.remarks.as_slice();
         assert_eq!(codes(&recording.remarks), [Code::Guessed]);
         assert!(remarks[0].message.contains("a with ex1/a, b with ex1_b_joint"), "{remarks:?}");

@@ -125,8 +125,7 @@ fn a_controllers_state_without_a_definition_is_told_by_its_bytes() {
     });
     // As Foxy and Humble write it: desired, actual, error.
     let found = read_file("run.db3", &bag(&log, false), &ReadOptions::default()).unwrap();
-    assert_values(&found.planned, plan);
-    assert_values(&found.measured, measurement);
+    assert_usual(&found);
     assert_eq!(found.source.planned_field, "desired.positions");
 }
 
@@ -162,8 +161,7 @@ fn messages_of_ros_1_are_read() {
         message.data = data;
     }
     let found = read(&log);
-    assert_values(&found.planned, plan);
-    assert_values(&found.measured, measurement);
+    assert_usual(&found);
 }
 
 #[test]
@@ -175,8 +173,7 @@ fn a_table_is_read_as_the_log_that_import_makes_of_it() {
     }
     for (name, bytes) in [("a.csv", text.clone().into_bytes()), ("a.csv.gz", gzip(text.as_bytes()))] {
         let found = read_file(name, &bytes, &ReadOptions::default()).unwrap();
-        assert_values(&found.planned, plan);
-        assert_values(&found.measured, measurement);
+        assert_usual(&found);
     }
     let error = read_file("a.csv", b"x,y\n1,2\n3,4\n5,6\n", &ReadOptions::default()).unwrap_err();
     assert!(error.to_string().contains("hydrotrace import"), "{error}");
@@ -197,8 +194,7 @@ fn topics_of_one_number_each_are_joints() {
     let (planned, measured) = (["/a/set:data", "/b/set:data"], ["/a/actual:data", "/b/actual:data"]);
     for joints in [&NAMES[..], &[]] {
         let found = read_with(&log, &options(&planned, &measured, joints));
-        assert_values(&found.planned, plan);
-        assert_values(&found.measured, measurement);
+        assert_usual(&found);
     }
     let found = read_with(&log, &options(&planned[..1], &measured[..1], &["boom"]));
     assert_eq!((joints(&found.planned), joints(&found.measured)), (vec!["boom"], vec!["boom"]));
@@ -216,8 +212,7 @@ fn numbers_in_json_one_a_topic_are_joints() {
     log.messages.sort_by_key(|message| message.log_ns);
     let (planned, measured) = (["/a/set:value", "/b/set:value"], ["/a/actual:value", "/b/actual:value"]);
     let found = read_with(&log, &options(&planned, &measured, &NAMES));
-    assert_values(&found.planned, plan);
-    assert_values(&found.measured, measurement);
+    assert_usual(&found);
 }
 
 #[test]

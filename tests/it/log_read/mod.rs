@@ -150,6 +150,13 @@ fn states(k: i64, names: &[&str], position: &[f64]) -> Vec<u8> {
     encode::joint_state(cdr::Kind::LittleEndian, stamp(k), names, position, &[])
 }
 
+/// The usual plan and measurement.
+#[track_caller]
+fn assert_usual(recording: &Recording) {
+    assert_values(&recording.planned, plan);
+    assert_values(&recording.measured, measurement);
+}
+
 /// Adds a `JointState` topic of all samples.
 fn add_joint_state(log: &mut Log, topic: &str, values: impl Fn(i64) -> Vec<f64>) {
     log.add(Channel::states(topic), 0..SAMPLES, |k| states(k, &NAMES, &values(k)));
