@@ -62,7 +62,11 @@ fn columns<T>(table: &[(Column, T)]) -> Vec<Column> {
 /// A column, and what it says of something in a log.
 type Told<T> = (Column, for<'a> fn(&(&'a Log, &'a Findings, &'a T)) -> Cell);
 
-fn row<T>(table: &[(Column, fn(&T) -> Cell)], of: &T) -> Vec<Cell> {
+type Says<T> = (Column, fn(&T) -> Cell);
+type SaysOfLimit = (Column, for<'a> fn(&OfLimit<'a>) -> Cell);
+type SaysOfRemark = (Column, for<'a> fn(&(&'a Log, &'a str, &'a Remark)) -> Cell);
+
+fn row<T>(table: &[Says<T>], of: &T) -> Vec<Cell> {
     table.iter().map(|(_, told)| told(of)).collect()
 }
 
@@ -189,7 +193,7 @@ const TRANSITIONS: &[Told<Transition>] = &[
 pub(super) type OfLimit<'a> = (&'a Log, &'a str, &'a JointFit, &'a str, Estimated);
 
 /// Numbers of a joint as a fit finds them; `value` is in the unit of the quantity's name.
-const LIMITS: &[(Column, for<'a> fn(&OfLimit<'a>) -> Cell)] = &[
+const LIMITS: &[SaysOfLimit] = &[
     (Column::text("run_id"), |(_, run_id, ..)| Cell::from(*run_id)),
     (Column::text("machine"), |(log, ..)| Cell::from(log.machine.as_deref())),
     (Column::text("joint"), |(_, _, joint, ..)| Cell::from(joint.name.as_str())),
@@ -209,7 +213,7 @@ const INTERVENTIONS: &[Column] =
     &[Column::text("machine"), Column::instant("at"), Column::text("joint"), Column::text("what")];
 
 /// A doubt about a run of a log.
-const REMARKS: &[(Column, for<'a> fn(&(&'a Log, &'a str, &'a Remark)) -> Cell)] = &[
+const REMARKS: &[SaysOfRemark] = &[
     (Column::text("run_id"), |(_, run_id, _)| Cell::from(*run_id)),
     (Column::text("machine"), |(log, _, _)| Cell::from(log.machine.as_deref())),
     (Column::text("code"), |(_, _, remark)| Cell::from(remark.code.name().as_str())),
