@@ -187,7 +187,6 @@ impl Remarks {
     }
 
     /// All but those of one kind.
-    #[must_use]
     pub fn without(mut self, code: Code) -> Self {
         self.retain(|remark| remark.code != code);
         self

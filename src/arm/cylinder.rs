@@ -121,7 +121,6 @@ impl Cylinder {
     /// of the joint's angle. Of a joint that slides the change by its position alone, the length means nothing.
     /// Without branches, for use in lanes.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
     pub fn length_and_lever(&self, sin: f64, cos: f64) -> (f64, f64) {
         let ([a, b], sense) = (self.sides_m, self.sense);
         let (sin_offset, cos_offset) = self.offset;
@@ -137,7 +136,6 @@ impl Cylinder {
     ///
     /// A lever below a micrometre, which no posture within the joint's range has, counts as one.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
     pub fn actuation(&self, (sin, cos): (f64, f64), speed_rad_s: f64, torque_nm: f64) -> Actuation {
         let (_, lever_m) = self.length_and_lever(sin, cos);
         let rod_speed_m_s = lever_m * speed_rad_s;

@@ -11,19 +11,15 @@ use crate::units::Degrees;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ArmError {
-    /// The text is not of its language.
     #[error("{file} cannot be read: {reason}")]
     Syntax { file: String, reason: String },
-    /// More text or deeper nesting than any arm needs.
     #[error("{file}: {found} {quantity}, at most {limit} are read")]
     TooLarge { file: String, quantity: &'static str, found: usize, limit: usize },
-    /// An element that contradicts another one or makes no sense.
     #[error("{file}: {element}: found {found}, expected {expected}")]
     Unexpected { file: String, element: String, found: String, expected: String },
     /// The end of the chain is not given and could be any of these links.
     #[error("{file}: the tool could be any of {}; name one", tools.join(", "))]
     SeveralTools { file: String, tools: Vec<String> },
-    /// Joints between base and tool whose positions are not known.
     #[error("{file}: the link {tool} cannot be placed without the positions of {}", joints.join(", "))]
     JointsMissing { file: String, tool: String, joints: Vec<String> },
     /// No posture within the limits has the tool there; what the nearest attempt leaves.

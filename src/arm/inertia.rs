@@ -51,7 +51,6 @@ impl Inertia {
     }
 
     /// The same body in the frame in which its own frame lies at `place`.
-    #[must_use]
     pub fn seen_from(&self, place: &Pose) -> Self {
         let (rotation, shift) = (place.rotation.matrix(), place.translation.vector);
         let first = rotation * self.first_kg_m;
@@ -67,7 +66,6 @@ impl Inertia {
     }
 
     /// Both bodies as one; they are given in the same frame.
-    #[must_use]
     pub fn with(&self, other: &Self) -> Self {
         Self {
             mass_kg: self.mass_kg + other.mass_kg,

@@ -105,7 +105,6 @@ fn dispatched<const L: usize>(
 
 /// As [`Chain::inverse_dynamics`], with the vector unit of the function that it is called from.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 pub fn inverse_dynamics<const L: usize>(
     chain: &Chain,
     load: &Load,
@@ -159,7 +158,6 @@ pub fn inverse_dynamics<const L: usize>(
 
 /// Motion of a body from that of the body before it, and what it takes to move it.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "as inverse_dynamics")]
 fn outwards<const L: usize, const SLIDES: bool>(
     step: &Step,
     inertia: &Inertia,
@@ -212,7 +210,6 @@ fn outwards<const L: usize, const SLIDES: bool>(
 
 /// Hands the load of a body to the body before it.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "as inverse_dynamics")]
 fn inwards<const L: usize, const SLIDES: bool>(step: &Step, outer: &Body<L>, inner: &mut Body<L>) {
     let rows: [[f64; 3]; 3] = step.rotation.transpose().into();
     let offset: [f64; 3] = step.offset_m.into();
@@ -237,32 +234,27 @@ fn inwards<const L: usize, const SLIDES: bool>(step: &Step, outer: &Body<L>, inn
 }
 
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "as inverse_dynamics")]
 fn at<const L: usize>(v: &Vectors<L>, lane: usize) -> [f64; 3] {
     [v[0][lane], v[1][lane], v[2][lane]]
 }
 
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "as inverse_dynamics")]
 fn set<const L: usize>(v: &mut Vectors<L>, lane: usize, to: [f64; 3]) {
     (v[0][lane], v[1][lane], v[2][lane]) = (to[0], to[1], to[2]);
 }
 
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "as inverse_dynamics")]
 fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "as inverse_dynamics")]
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Product of a matrix, by rows, and a vector.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "as inverse_dynamics")]
 fn times(rows: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     let dot = |a: [f64; 3]| a[0] * v[0] + a[1] * v[1] + a[2] * v[2];
     [dot(rows[0]), dot(rows[1]), dot(rows[2])]

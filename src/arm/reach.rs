@@ -30,7 +30,6 @@ const RIGID: f64 = 1e-9;
 
 impl Chain {
     /// The same with other ranges of the joints, rad; missing ones stay.
-    #[must_use]
     pub fn within(mut self, ranges_rad: impl IntoIterator<Item = [f64; 2]>) -> Self {
         for (joint, [lower_rad, upper_rad]) in self.joints.iter_mut().zip(ranges_rad) {
             (joint.limit.lower_rad, joint.limit.upper_rad) = (lower_rad, upper_rad);

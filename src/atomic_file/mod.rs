@@ -22,10 +22,8 @@ pub(crate) use temporary::Temporary;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum AtomicError {
-    /// The target is a directory, or names no file.
     #[error("{} is a folder; give the name of a file", path.display())]
     NotAFile { path: PathBuf },
-    /// The directory of the target does not exist.
     #[error("cannot write {}: there is no folder {}; make it first", path.display(), folder.display())]
     NoFolder { path: PathBuf, folder: PathBuf },
     /// The target was read, so it is an input.
@@ -34,7 +32,6 @@ pub enum AtomicError {
     /// The target is worth more than to be replaced in passing.
     #[error("{} is {what}; give the output another name, or replace it with --force", path.display())]
     Kept { path: PathBuf, what: String },
-    /// The file system refused.
     #[error("cannot {action} {}", path.display())]
     Io { action: &'static str, path: PathBuf, source: io::Error },
 }

@@ -1,5 +1,7 @@
 //! Numbers on the command line. Degrees, milliseconds and percent become SI here.
 
+use std::convert::identity;
+
 use crate::units::radians_from_degrees;
 
 /// A number within bounds; `what` names it in the error.
@@ -10,38 +12,44 @@ pub(super) fn within(text: &str, bounds: [f64; 2], what: &str) -> Result<f64, St
     }
 }
 
-pub(super) fn not_negative(text: &str, what: &str) -> Result<f64, String> {
-    within(text, [0.0, f64::MAX], &format!("a non-negative {what}"))
+/// Parsers of options: bounds, what is expected, and how it becomes SI.
+macro_rules! numbers {
+    ($($(#[$doc:meta])* $name:ident($least:expr, $most:expr, $what:expr, $si:expr);)*) => {
+        $($(#[$doc])*
+        pub(super) fn $name(text: &str) -> Result<f64, String> {
+            within(text, [$least, $most], $what).map($si)
+        })*
+    };
 }
 
-/// Degrees, as radians.
-pub(super) fn degrees(text: &str) -> Result<f64, String> {
-    not_negative(text, "angle in degrees").map(radians_from_degrees)
+const fn thousandth(value: f64) -> f64 {
+    value / 1e3
 }
 
-/// Degrees a second above zero, as radians a second.
-pub(super) fn speed_deg_s(text: &str) -> Result<f64, String> {
-    within(text, [0.1, 1000.0], "a speed from 0.1 to 1000 deg/s").map(radians_from_degrees)
+const fn hundredth(value: f64) -> f64 {
+    value / 100.0
 }
 
-/// Millimetres a second above zero, as metres a second.
-pub(super) fn speed_mm_s(text: &str) -> Result<f64, String> {
-    within(text, [1.0, 10_000.0], "a speed from 1 to 10000 mm/s").map(|mm_s| mm_s / 1e3)
-}
-
-/// Millimetres, as metres.
-pub(super) fn millimetres(text: &str) -> Result<f64, String> {
-    not_negative(text, "length in millimetres").map(|mm| mm / 1e3)
-}
-
-/// Millimetres of a correction, as metres.
-pub(super) fn correction_mm(text: &str) -> Result<f64, String> {
-    within(text, [0.0, 1000.0], "a length from 0 to 1000 mm").map(|mm| mm / 1e3)
-}
-
-/// Milliseconds, as seconds.
-pub(super) fn milliseconds(text: &str) -> Result<f64, String> {
-    not_negative(text, "time in milliseconds").map(|ms| ms / 1e3)
+numbers! {
+    degrees(0.0, f64::MAX, "a non-negative angle in degrees", radians_from_degrees);
+    /// Above zero.
+    speed_deg_s(0.1, 1000.0, "a speed from 0.1 to 1000 deg/s", radians_from_degrees);
+    /// Above zero.
+    speed_mm_s(1.0, 10_000.0, "a speed from 1 to 10000 mm/s", thousandth);
+    millimetres(0.0, f64::MAX, "a non-negative length in millimetres", thousandth);
+    /// Of a correction.
+    correction_mm(0.0, 1000.0, "a length from 0 to 1000 mm", thousandth);
+    milliseconds(0.0, f64::MAX, "a non-negative time in milliseconds", thousandth);
+    /// A negative one allows some growth.
+    reduction_percent(f64::MIN, 100.0, "a percentage of at most 100", hundredth);
+    growth_percent(0.0, 1000.0, "a number from 0 to 1000", hundredth);
+    share(0.0, 1.0, "a number from 0 to 1", identity);
+    probability(0.0, 1.0, "a probability from 0 to 1", identity);
+    ratio(0.0, f64::MAX, "a non-negative ratio", identity);
+    positive(f64::MIN_POSITIVE, f64::MAX, "a number above 0", identity);
+    seconds(0.0, f64::MAX, "a non-negative time in seconds", identity);
+    any_seconds(f64::MIN, f64::MAX, "a time in seconds", identity);
+    rate_hz(1.0, 10_000.0, "a rate from 1 to 10000 Hz", identity);
 }
 
 /// Milliseconds of a delay, as nanoseconds.
@@ -49,44 +57,6 @@ pub(super) fn milliseconds(text: &str) -> Result<f64, String> {
 pub(super) fn delay_ns(text: &str) -> Result<i64, String> {
     let ms = within(text, [-1e4, 1e4], "a delay from -10000 to 10000 ms")?;
     Ok((ms * 1e6).round() as i64)
-}
-
-/// Percent, as a share; a negative reduction allows some growth.
-pub(super) fn reduction_percent(text: &str) -> Result<f64, String> {
-    within(text, [f64::MIN, 100.0], "a percentage of at most 100").map(|percent| percent / 100.0)
-}
-
-/// Percent, as a share.
-pub(super) fn growth_percent(text: &str) -> Result<f64, String> {
-    within(text, [0.0, 1000.0], "a number from 0 to 1000").map(|percent| percent / 100.0)
-}
-
-pub(super) fn share(text: &str) -> Result<f64, String> {
-    within(text, [0.0, 1.0], "a number from 0 to 1")
-}
-
-pub(super) fn probability(text: &str) -> Result<f64, String> {
-    within(text, [0.0, 1.0], "a probability from 0 to 1")
-}
-
-pub(super) fn ratio(text: &str) -> Result<f64, String> {
-    not_negative(text, "ratio")
-}
-
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    within(text, [f64::MIN_POSITIVE, f64::MAX], "a number above 0")
-}
-
-pub(super) fn seconds(text: &str) -> Result<f64, String> {
-    not_negative(text, "time in seconds")
-}
-
-pub(super) fn any_seconds(text: &str) -> Result<f64, String> {
-    within(text, [f64::MIN, f64::MAX], "a time in seconds")
-}
-
-pub(super) fn rate_hz(text: &str) -> Result<f64, String> {
-    within(text, [1.0, 10_000.0], "a rate from 1 to 10000 Hz")
 }
 
 #[cfg(test)]

@@ -9,7 +9,6 @@ use crate::{series::JointKind, text::shell_word, units::Degrees};
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum FitError {
-    /// No joint has enough motion.
     #[error(
         "no joint can be fitted: {shared} are both sent and measured ({logs} log(s)), of which none is sent through {} or \
          {} or more; give a log of a run in which joints move",
@@ -23,36 +22,28 @@ pub enum FitError {
         shell_word(plan)
     )]
     CommandStands { log: String, plan: String, command: String },
-    /// Joints move, but are not sampled often enough to show how.
     #[error(
         "no joint can be fitted: measured samples are {:.2} s apart, and how a joint answers shows in samples {} s apart or \
          less; record at {:.0} Hz or more",
         interval_s, most_s, most_s.recip()
     )]
     TooSparse { interval_s: f64, most_s: f64 },
-    /// A number of a model that cannot be.
     #[error("{key} of joint {joint} is {found}; a number from {least} to {most} is expected")]
     Value { joint: String, key: &'static str, found: f64, least: f64, most: f64 },
-    /// Logs of different arms.
     #[error(
         "{log} has the joints {found}, the logs before it {known}: not one in common, so they are of two machines; fit them apart"
     )]
     OtherArm { log: String, found: String, known: String },
-    /// A joint that turns in one log and slides in another.
     #[error(
         "{joint} turns in one of the logs and slides in another, as in {log}: read all as lengths or all as angles"
     )]
     OtherKind { log: String, joint: String },
-    /// A joint that the fit leaves out.
     #[error("the fit has no joint {joint}; it has {known}")]
     UnknownJoint { joint: String, known: String },
-    /// A plan longer than a simulation may be.
     #[error("joint {joint} is sent angles for {duration_s} s; at most {most_s} s are simulated")]
     Duration { joint: String, duration_s: f64, most_s: f64 },
-    /// A setting of the compensation out of range.
     #[error("{key} is {found}; a number from {least} to {most} is expected")]
     Setting { key: &'static str, found: f64, least: f64, most: f64 },
-    /// A joint without room for the run.
     #[error(
         "joint {joint} starts at {} and may go from {} to {}; a stroke takes {} on one side at least: start elsewhere",
         kind.says(*home_rad), kind.says(*lowest_rad), kind.says(*highest_rad), kind.says(*travel_rad)

@@ -79,7 +79,6 @@ impl Fit {
     /// The same, with what its models leave unexplained in these runs weighed against what is known: `left` gets what was held out
     /// of the fit, if anything, and what is found here, mean and 0.9 quantile of peaks, rad. A speed limit that a joint is beyond in them
     /// is none.
-    #[must_use]
     pub fn held_against(
         mut self,
         logs: &[Observation],

@@ -65,7 +65,6 @@ pub(super) fn simulate_lanes(
 }
 
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 fn lanes<const N: usize>(
     models: [&Model; N],
     sent: &[(f64, f64)],

@@ -16,28 +16,20 @@ use crate::{arm::ArmError, suggest::suggestion, text::shell_argument};
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum LogError {
-    /// The file system said no.
     #[error("cannot {action} {}{}", path.display(), meant_as_output(path, source))]
     File { action: &'static str, path: PathBuf, source: std::io::Error },
-    /// Neither magic bytes nor any record.
     #[error("{} is not an MCAP file: found {found}, expected the bytes 89 4D 43 41 50 30 0D 0A; {fix}", path.display())]
     NotMcap { path: PathBuf, found: String, fix: &'static str },
-    /// A table that does not say all that is needed.
     #[error("{} {}", path.display(), of_table(path, source, given))]
     Table { path: PathBuf, source: Box<CsvError>, given: Given },
-    /// A file that says how tables are read, and cannot be read.
     #[error(transparent)]
     Map(Box<CsvError>),
-    /// A file of another form that cannot be read.
     #[error("cannot read {}: {reason}", path.display())]
     Form { path: PathBuf, reason: String },
-    /// A directory without a recording.
     #[error("{} holds no .mcap or .db3 file; give a recording or a ROS 2 bag directory", path.display())]
     EmptyBag { path: PathBuf },
-    /// `metadata.yaml` is no bag description.
     #[error("{} is no rosbag2 description: {reason}", path.display())]
     BagMetadata { path: PathBuf, reason: String },
-    /// A topic that the caller asked for.
     #[error("no topic {topic:?}{}; the log has {present}", suggestion(nearest.as_deref()))]
     NoTopic { topic: String, nearest: Option<String>, present: String },
     /// Columns of a table where a topic is asked for.
@@ -51,7 +43,6 @@ pub enum LogError {
          the header is wrong, put that right"
     )]
     ConvertedBefore { option: &'static str, header: String, unit: String, file: String },
-    /// A topic that the caller asked for holds no joint angles in that field.
     #[error(
         "topic {topic:?} ({type_name}) has no joint angles{}{}; it has {present}",
         field.as_ref().map(|f| format!(" in field {f:?}")).unwrap_or_default(),
@@ -64,33 +55,27 @@ pub enum LogError {
         nearest: Option<Box<str>>,
         present: String,
     },
-    /// A frame that the caller asked for.
     #[error(
         "topic {topic:?} gives {found}{}; it has {present}; name one of these as {topic}:CHILD@PARENT, as transforms \
          are not put together from others",
         suggestion(nearest.as_deref())
     )]
     NoTransform { topic: String, found: String, nearest: Option<Box<str>>, present: Box<str> },
-    /// Transforms of plan and measurement have different parents.
     #[error(
         "the plan is {planned}, the measurement {measured}: poses are compared in one frame, that behind the @, and \
          transforms are not put together from others; name two of one frame with --planned and --measured; the log has \
          {present}"
     )]
     FramesApart { planned: Box<str>, measured: Box<str>, present: Box<str> },
-    /// Poses of plan and measurement name different frames.
     #[error(
         "{apart}: poses are compared in one frame; choose topics of one frame, or, if these are one frame by two names, \
          name both topics with --planned and --measured"
     )]
     PosesApart { apart: String },
-    /// The log holds no plan, or no measurement.
     #[error("found no {missing} joint angles; the log has {present}; name them with {fix}")]
     Missing { missing: &'static str, present: String, fix: String },
-    /// What is not found may lie in what could not be read.
     #[error("{error}; not all of the log could be read: {damage}")]
     Damaged { error: Box<Self>, damage: String },
-    /// Planned and measured joints have no name in common.
     #[error(
         "planned joints ({planned}) and measured joints ({measured}) have no name in common; \
          choose other topics with --planned and --measured, or give a topic that carries no names those of its joints, in \
@@ -98,42 +83,35 @@ pub enum LogError {
          JOINT=COLUMN,... --measured JOINT=COLUMN,...`"
     )]
     NoCommonJoint { planned: String, measured: String, given: String },
-    /// Poses of a tool where joints are asked for.
     #[error(
         "{topic} holds poses of a tool, and the log no angles of joints: what is fitted and sent is of joints; `hydrotrace report` compares \
          poses, too"
     )]
     PosesAlone { topic: String },
-    /// Plan and measurement are of different times.
     #[error(
         "the plan covers {:.2} to {:.2} s, the measurement {:.2} to {:.2} s: they have no time in common; {}",
         planned_s[0], planned_s[1], measured_s[0], measured_s[1],
         if *by_receipt { "give a plan and a measurement of one run" } else { "if their clocks differ, try --time log" }
     )]
     NoOverlap { planned_s: [f64; 2], measured_s: [f64; 2], by_receipt: bool },
-    /// The range that the caller asked for holds nothing.
     #[error(
         "nothing of {topic} lies {range}: it spans {spans_s:.2} s; --from and --to count in seconds from the first \
          sample of the run, as the times of a report do"
     )]
     NothingInRange { topic: String, range: String, spans_s: f64 },
-    /// Only the summaries of the files were read.
     #[error("only the index was read, not the messages; `hydrotrace info --check {logs}` reads all of them")]
     NotLookedAt { logs: String },
-    /// Plan and measurement are in no messages that a program could draw as they are.
     #[error(
         "the messages of {topics} cannot be drawn as they are; `hydrotrace export LOG -o run.csv` and \
          `hydrotrace import run.csv -o run.mcap` make a log of which they can"
     )]
     NothingToDraw { topics: String },
-    /// Two files of a run that are no parts of it.
     #[error(
         "{} and {} both have {topic} for the same {shared_s:.2} s and are no parts of one run; give the one that \
          counts, or put the plan of the other into it with `hydrotrace join`",
         files[0], files[1]
     )]
     ToldTwice { topic: String, files: [String; 2], shared_s: f64 },
-    /// Files that are said to be one run, and cannot be.
     #[error(
         "{} and {} are {:.1} hours apart in {topic}: they are not of one run; give the files of one run, `hydrotrace compare` two runs, \
          or put the plan of one into the other with `hydrotrace join`",
@@ -142,35 +120,26 @@ pub enum LogError {
         apart_s / 3600.0
     )]
     Apart { topic: String, files: [String; 2], apart_s: f64 },
-    /// One field given as plan and as measurement.
     #[error("{field} is given as plan and as measurement; their difference would be nothing")]
     SameField { field: String },
-    /// A joint that the caller asked for.
     #[error("no joint {joint:?}{}; the log has {present}", suggestion(nearest.as_deref()))]
     NoJoint { joint: String, nearest: Option<String>, present: String },
-    /// The same joint asked for twice.
     #[error("joint {joint:?} is named twice; a joint counts once")]
     JointTwice { joint: String },
-    /// A clock that the caller asked for.
     #[error("the {clock} time of topic {topic:?} is zero or stands still; {}", other_clock(clock))]
     NoClock { clock: &'static str, topic: String },
-    /// A log that is to get a plan has one.
     #[error("{} has a plan in {topic} already: `hydrotrace report` it as it is; or, if what it calls the plan is what was sent, import the recorder's table with `--command JOINT=COLUMN,...` in place of `--planned`, and join that", path.display())]
     Planned { path: PathBuf, topic: String },
-    /// A log in an object store.
     #[error(transparent)]
     Remote(#[from] super::remote::RemoteError),
-    /// The file of cylinders, or the URDF that it goes with.
     #[error(transparent)]
     Cylinders(#[from] Box<ArmError>),
-    /// The file of cylinders is of other joints.
     #[error(
         "found no joint of {file} ({joints}) in the log, which has {present}; expected a joint by its name there, or its \
          cylinder, such as boom_cylinder for boom: call it so in the file, or name the topics with --planned and \
          --measured"
     )]
     NoCylinder { file: String, joints: String, present: String },
-    /// A joint no sample of which fits its cylinder.
     #[error(
         "{side} positions of {joint} run {:.4} to {:.4} {unit}, expected {:.4} to {:.4} {unit} by the triangle of its \
          cylinder: none is left; {hint}",
@@ -184,7 +153,6 @@ pub enum LogError {
         unit: &'static str,
         hint: Box<str>,
     },
-    /// The writer of a log that copies another failed.
     #[error("cannot write the log {}", path.display())]
     Copy { path: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
 }
@@ -205,7 +173,6 @@ impl LogError {
     }
 
     /// With the options that the caller gave to read it, for the line to type next.
-    #[must_use]
     pub fn given(mut self, options: &ReadOptions) -> Self {
         if let Self::Table { given, .. } = &mut self {
             *given = Given::of(options);

@@ -145,7 +145,6 @@ impl ReadOptions {
     }
 
     /// With signals that are read if they are where our own logs have them; one that the caller named stays.
-    #[must_use]
     pub fn wanting(mut self, roles: &[SignalRole]) -> Self {
         for &role in roles {
             if self.signals.iter().all(|wanted| wanted.role != role) {

@@ -48,6 +48,12 @@ pub fn quintic(a: State, b: State, span_s: f64, at_s: f64) -> State {
     }
 }
 
+/// From 0 to 1 with zero speed and acceleration at both.
+pub fn smooth_step(share: f64) -> f64 {
+    let x = share.clamp(0.0, 1.0);
+    x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

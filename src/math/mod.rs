@@ -13,7 +13,7 @@ mod trend;
 mod two_samples;
 mod whole;
 
-pub use hermite::{State, cubic, linear, quintic};
+pub use hermite::{State, cubic, linear, quintic, smooth_step};
 pub use line::{Line, line};
 pub use lowpass::lowpass;
 pub use paired::{SignedRank, half_interval, signed_rank};

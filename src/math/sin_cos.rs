@@ -18,7 +18,6 @@ const LARGEST_RAD: f64 = 1e6;
 ///
 /// Taylor polynomials about the nearest multiple of pi/2, whose remainder there is below 5e-17.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 pub fn sin_cos<const L: usize>(angle_rad: &[f64; L]) -> ([f64; L], [f64; L]) {
     let (mut sin, mut cos) = ([0.0; L], [0.0; L]);
     if !angle_rad.iter().fold(true, |small, a| small & (a.abs() < LARGEST_RAD)) {

@@ -110,7 +110,6 @@ impl Choice {
 
 impl Choice {
     /// The same rule at a plan that is above ceilings, which another shape is to keep to.
-    #[must_use]
     pub fn above(self, timing: Timing, ceilings: &Ceilings) -> Self {
         Self { timing, within: 0, horizon_s: None, ceilings: within_reach(ceilings), ..self }
     }

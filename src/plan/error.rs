@@ -12,12 +12,10 @@ pub enum PlanError {
     /// A task that was built in code and does not hold what its documentation says.
     #[error("the task has other {what} than expected: {expected}")]
     Task { what: &'static str, expected: String },
-    /// Task and arm do not name the same joints.
     #[error(
         "the task's joints are {task}, those of the arm are {arm}; name every joint of the arm in the task"
     )]
     JointsDiffer { task: String, arm: String },
-    /// A joint that the task has in the unit of the other kind.
     #[error(
         "the joint {joint} {}", match arm {
             JointKind::Slides => "slides by the arm's description, and the task has it in degrees; give its positions_mm, speed_mm_s and \
@@ -27,14 +25,12 @@ pub enum PlanError {
         }
     )]
     KindsDiffer { joint: String, arm: JointKind },
-    /// A key point given by the tool that no posture within the joint ranges reaches.
     #[error("key point {point} cannot be reached")]
     Unreachable {
         /// Number of the key point, from 1.
         point: usize,
         source: ArmError,
     },
-    /// A key point outside a joint's range: no timing helps.
     #[error(
         "key point {point} has {joint} at {}, its range is {} to {}: {:.3e} {} beyond it; move the key point or widen the range",
         kind.says(*found_rad), kind.says(*lowest_rad), kind.says(*highest_rad),
@@ -49,22 +45,17 @@ pub enum PlanError {
         lowest_rad: f64,
         highest_rad: f64,
     },
-    /// A speed, acceleration or jerk at an end that is beyond the joint's limit.
     #[error("the {end} asks {joint} for a {quantity} of {share:.2} times its limit")]
     EndOutside { end: &'static str, joint: String, quantity: &'static str, share: f64 },
     /// Two joints as one, or a payload beyond what numbers hold.
     #[error("a payload of {payload_kg} kg is no mass")]
     Payload { payload_kg: f64 },
-    /// Key points, dwells or times that make no spline.
     #[error("the key points and times make no plan")]
     Spline(#[from] SplineError),
-    /// A number of times other than that of the key points.
     #[error("{found} times for {expected} key points; give each key point's arrival, dwells counted, from 0")]
     Times { found: usize, expected: usize },
-    /// Times that count from another instant than the departure.
     #[error("the times begin at {found_s} s; the first is the departure, from which the others count: 0")]
     Begins { found_s: f64 },
-    /// A free point that the motion cannot pass.
     #[error(
         "free point {point}, of {angles} angles for {joints} joints at {t_s} s, is not on the way between two key points"
     )]
@@ -75,7 +66,6 @@ pub enum PlanError {
         angles: usize,
         joints: usize,
     },
-    /// Settings of the search.
     #[error("the search cannot be run so")]
     Search(#[from] MoeaError),
 }

@@ -291,7 +291,6 @@ fn dispatched(task: &Task<'_>, samples: &Samples, weights_s: &[f64], lanes: &mut
 
 /// One group of values from a place on.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 fn put(to: &mut [f64], first: usize, values: &[f64; LANES]) {
     if let Some(to) = to[first..].first_chunk_mut() {
         *to = *values;

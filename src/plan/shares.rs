@@ -192,27 +192,23 @@ impl Evaluator {
 
 /// The larger; the second if the first is no number, which so never counts.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
 /// The smaller; the second if the first is no number.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
 /// The largest, at least 0, by halves: no value waits for the one before it.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 fn top(values: &[f64; LANES]) -> f64 {
     halved(values.map(|value| larger(value, 0.0)), larger)
 }
 
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 fn halved(mut values: [f64; LANES], of: impl Fn(f64, f64) -> f64) -> f64 {
     for half in [4, 2, 1] {
         for l in 0..half {

@@ -11,29 +11,23 @@ use crate::suggest::suggestion;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum PlantError {
-    /// The file cannot be read.
     #[error("cannot read the plant {}: {reason}", path.display())]
     Read { path: PathBuf, reason: String },
-    /// The text is no TOML, or has a table that no plant has.
     #[error("line {line}: {message}")]
     Syntax { line: usize, message: String },
-    /// A key that no plant has.
     #[error("line {line}: unknown key {key}; {}", match nearest {
         Some(nearest) => format!("is {nearest} meant?"),
         None => "every quantity carries its unit in its key".to_owned(),
     })]
     UnknownKey { line: usize, key: String, nearest: Option<String> },
-    /// A key that is left out.
     #[error("{key} is missing: give a number from {least} to {most}{}", if *by_joint {
         ", or a table with one for each joint"
     } else {
         ""
     })]
     MissingKey { key: String, least: f64, most: f64, by_joint: bool },
-    /// Joints that are left out or unknown.
     #[error("line {line}: {key} is for {found}; the plant's joints are {declared}")]
     Joints { line: usize, key: String, found: String, declared: String },
-    /// A number outside what makes sense.
     #[error("{}{key} is {found}; {expected}", line.map(|line| format!("line {line}: ")).unwrap_or_default())]
     Value {
         line: Option<usize>,
@@ -42,33 +36,25 @@ pub enum PlantError {
         found: f64,
         expected: String,
     },
-    /// No such machine comes with the program.
     #[error("there is no plant {name:?}{}; there are {known}", suggestion(nearest.as_deref()))]
     UnknownPreset { name: String, nearest: Option<String>, known: String },
-    /// Plant and arm do not belong together.
     #[error(
         "the plant is for the joints {plant}, the arm has {arm}: give a plant file with these joints in this order; \
          sample-logs/plant/default.toml in the repository is one to start from"
     )]
     OtherArm { plant: String, arm: String },
-    /// A joint that nothing moves.
     #[error("joint {joint} has no cylinder; give it one in the arm's file of cylinders")]
     NoCylinder { joint: String },
-    /// A joint that the simulation has no mechanics for.
     #[error("joint {joint} slides; only arms whose joints all turn are simulated")]
     Slides { joint: String },
-    /// A joint that the command leaves out.
     #[error("the command has no {what} for joint {joint}; a track with positions and speeds is needed")]
     NoCommand { joint: String, what: &'static str },
-    /// A run longer than a simulation can be.
     #[error("the command lasts {duration_s} s; 0 to {most_s} s can be simulated")]
     Duration { duration_s: f64, most_s: f64 },
-    /// A payload that cannot be.
     #[error(
         "payload change {index} is {mass_kg} kg at {at_s} s; masses of zero or more, in order of time, are expected"
     )]
     Payload { index: usize, mass_kg: f64, at_s: f64 },
-    /// A start at which the supply cannot hold the arm.
     #[error(
         "joint {joint} must hold {force_n:.0} N at the start; the supply gives {least_n:.0} to {most_n:.0} N"
     )]
@@ -79,7 +65,6 @@ pub enum PlantError {
         raise cylinder.dead_volume_m3 or lower friction.bristle_stiffness_n_m or supply.bulk_modulus_pa"
     )]
     TooStiff { joint: String, rate_1_s: f64, most_1_s: f64 },
-    /// The state left the numbers.
     #[error("the simulation diverged at {at_s} s; check the arm's masses and the plant's parameters")]
     Diverged { at_s: f64 },
 }

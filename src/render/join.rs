@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{
-    kit::{Block, Document, Id, Section, Sentence, counted, fact},
+    kit::{Block, Document, Fact, Id, Section, Sentence, counted, fact},
     metric::{lengths_as_angles, position},
     next,
 };
@@ -26,8 +26,7 @@ pub(crate) fn gathered(gathered: &Gathered, output: &Path) -> Document {
 
 /// As sentences.
 pub(crate) fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {
-    let Joined { sent, sent_is_command, located, at_s, duration_s, joints, messages, files, remarks, .. } =
-        joined;
+    let Joined { sent, sent_is_command, located, at_s, duration_s, joints, messages, .. } = joined;
     let plan = plan.display();
     if joined.keeps_plan {
         return with_its_plan(joined, &plan.to_string(), output);
@@ -43,50 +42,35 @@ pub(crate) fn document(joined: &Joined, plan: &Path, output: &Path) -> Document 
         ),
         _ => format!("the {what} of {plan} from {at_s:.3} s on, as given"),
     };
-    let mut facts = vec![
-        fact("sent", sent),
-        fact(
-            "plan",
-            format!(
-                "{duration_s:.2} s of {} in /planned/joint_states, held {:.2} s before and {:.2} s after",
-                counted(*joints, "joint"),
-                joined.rest_before_s,
-                joined.rest_after_s
-            ),
-        ),
-    ];
-    if !files.is_empty() {
-        facts.push(fact("files", files.join(", ")));
-    }
+    let planned = format!(
+        "{duration_s:.2} s of {} in /planned/joint_states, held {:.2} s before and {:.2} s after",
+        counted(*joints, "joint"),
+        joined.rest_before_s,
+        joined.rest_after_s
+    );
     let written =
         format!("{messages} messages of the run and the plan of {plan} written to {}.", output.display());
-    let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)]).with(Block::Facts(facts));
-    Document::default().with(next::report(section, &[output])).remarked(remarks)
+    told(joined, written, vec![fact("sent", sent), fact("plan", planned)], output)
 }
 
 /// Of a log that had the plan.
 fn with_its_plan(joined: &Joined, plan: &str, output: &Path) -> Document {
-    let Joined { at_s, duration_s, joints, messages, files, remarks, .. } = joined;
-    let mut facts = vec![
-        fact(
-            "plan",
-            format!(
-                "{duration_s:.2} s of {} as the log has it, from {at_s:.3} s on",
-                counted(*joints, "joint")
-            ),
-        ),
-        fact(
-            "sent",
-            format!("the command of {plan}, which was sent as it stands if the log does not say otherwise"),
-        ),
-    ];
-    if !files.is_empty() {
-        facts.push(fact("files", files.join(", ")));
-    }
+    let Joined { at_s, duration_s, joints, messages, .. } = joined;
+    let planned =
+        format!("{duration_s:.2} s of {} as the log has it, from {at_s:.3} s on", counted(*joints, "joint"));
+    let sent =
+        format!("the command of {plan}, which was sent as it stands if the log does not say otherwise");
     let written = format!(
         "{messages} messages of the run, which holds its plan, and the command of {plan} written to {}.",
         output.display()
     );
+    told(joined, written, vec![fact("plan", planned), fact("sent", sent)], output)
+}
+
+fn told(joined: &Joined, written: String, mut facts: Vec<Fact>, output: &Path) -> Document {
+    if !joined.files.is_empty() {
+        facts.push(fact("files", joined.files.join(", ")));
+    }
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)]).with(Block::Facts(facts));
-    Document::default().with(next::report(section, &[output])).remarked(remarks)
+    Document::default().with(next::report(section, &[output])).remarked(&joined.remarks)
 }

@@ -51,15 +51,17 @@ const LEAST_APART_S: f64 = 0.01;
 /// Instants at which a pace is judged.
 const PACE_INSTANTS: usize = 400;
 
+/// The joints of both.
+fn pairs<'a>(motion: &'a Series, within: &'a Series) -> Vec<(&'a Track, &'a Track)> {
+    let both = |track: &'a Track| Some((track, within.track(track.name())?));
+    motion.tracks.iter().filter_map(both).filter(|(one, other)| one.kind() == other.kind()).collect()
+}
+
 /// Looks for `motion` in `within` by its positions, over the joints of both; a metre counts as a radian. Of equally good
 /// places the first. `None` if they share no joint, the motion does not move, less than four fifths
 /// of it lie within, or one lasts three days.
 pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
-    let both = |track| {
-        let other = within.track(Track::name(track))?;
-        (other.kind() == track.kind()).then_some((track, other))
-    };
-    let pairs: Vec<(&Track, &Track)> = motion.tracks.iter().filter_map(both).collect();
+    let pairs = pairs(motion, within);
     let [from_s, to_s] = span_s(pairs.iter().map(|pair| pair.0))?;
     let [start_s, end_s] = span_s(pairs.iter().map(|pair| pair.1))?;
     let spread_rad = spread_rad(&pairs, from_s, to_s);
@@ -91,11 +93,7 @@ pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
 /// Difference between a motion and a longer one in which its own time 0 lies at `at_s`, as a share of the motion; infinite where less than
 /// four fifths of it lie within. `None` if they share no joint or the motion does not move.
 pub fn left_at(motion: &Series, within: &Series, at_s: f64) -> Option<f64> {
-    let both = |track| {
-        let other = within.track(Track::name(track))?;
-        (other.kind() == track.kind()).then_some((track, other))
-    };
-    let pairs: Vec<(&Track, &Track)> = motion.tracks.iter().filter_map(both).collect();
+    let pairs = pairs(motion, within);
     let [from_s, to_s] = span_s(pairs.iter().map(|pair| pair.0))?;
     let spread_rad = spread_rad(&pairs, from_s, to_s);
     let left = left_rad(&pairs, [from_s, to_s], at_s + from_s, 1.0, INSTANTS);

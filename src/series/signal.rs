@@ -119,19 +119,15 @@ pub struct Signal {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum SignalError {
-    /// There are no samples.
     #[error("no samples")]
     Empty,
-    /// The arrays have different lengths.
     #[error("{times} time stamps but {values} values of {array}")]
     LengthMismatch { array: &'static str, times: usize, values: usize },
-    /// A sample is NaN or infinite.
     #[error("{array} {index} is not finite: {value}")]
     NotFinite { array: &'static str, index: usize, value: f64 },
     /// Time stands still or runs backwards.
     #[error("time does not increase at sample {index}: {previous_s} s then {next_s} s")]
     NotIncreasing { index: usize, previous_s: f64, next_s: f64 },
-    /// A cut lies outside the samples or out of order.
     #[error("cut {cut} is not between the previous one and the {samples} samples")]
     BadCut { cut: usize, samples: usize },
     /// Too much to be held in samples of equal steps.

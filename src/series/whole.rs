@@ -281,6 +281,7 @@ fn moving_within_s(series: &Series, [begin_s, end_s]: [f64; 2]) -> Option<[f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::smooth_step;
 
     fn wave(missing: std::ops::Range<usize>, with_speed: bool) -> Track {
         let kept: Vec<usize> = (0..300).filter(|k| !missing.contains(k)).collect();
@@ -320,11 +321,7 @@ mod tests {
     fn a_plan_that_begins_or_ends_in_motion_is_cut_and_one_at_rest_is_whole() {
         let of = |within: std::ops::Range<i32>| {
             let t_s: Vec<f64> = within.map(|k| f64::from(k) * 0.02).collect();
-            let step = |t: &f64| {
-                let x = ((t - 1.0) / 2.0).clamp(0.0, 1.0);
-                x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
-            };
-            let position = t_s.iter().map(step).collect();
+            let position = t_s.iter().map(|t| smooth_step((t - 1.0) / 2.0)).collect();
             Broken::of(&Series { tracks: vec![Track::new("J", t_s, position, &[]).unwrap()] })
         };
         assert_eq!(of(0..200), None);
@@ -339,7 +336,7 @@ mod tests {
             let position = |t: f64| {
                 let t = if t < stopped_s { t } else { stopped_s.max(t - (resumes_s - stopped_s)) };
                 let x = ((t - 1.0) / 4.0).clamp(0.0, 1.0);
-                let at = if gentle { x * x * x * (10.0 - 15.0 * x + 6.0 * x * x) } else { x };
+                let at = if gentle { smooth_step(x) } else { x };
                 if step > 0.0 { (at / step).round() * step } else { at }
             };
             Broken::of(&Series::sampled("J", 1200, position))

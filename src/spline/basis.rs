@@ -11,7 +11,6 @@ pub(super) type Row<const L: usize> = [[f64; L]; WIDTH];
 
 /// Row of degree 0.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 pub(super) fn constant<const L: usize>() -> Row<L> {
     let mut row = [[0.0; L]; WIDTH];
     row[0] = [1.0; L];
@@ -23,7 +22,6 @@ pub(super) fn constant<const L: usize>() -> Row<L> {
 /// The row of degree g weighs the control points `piece..=piece + g` of the derivative of
 /// order `degree - g`.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 pub(super) fn raise<const L: usize>(
     row: &mut Row<L>,
     to: usize,
@@ -46,7 +44,6 @@ pub(super) fn raise<const L: usize>(
 
 /// The row of degree `DEGREE`.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 pub(super) fn row<const DEGREE: usize, const L: usize>(
     knots: &Knots,
     piece: usize,
@@ -61,7 +58,6 @@ pub(super) fn row<const DEGREE: usize, const L: usize>(
 
 /// Sums of control points times basis functions.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 pub(super) fn weigh<const L: usize>(control: &[f64], row: &Row<L>) -> [f64; L] {
     let mut sum = [0.0; L];
     for (c, weights) in control.iter().zip(row) {

@@ -49,7 +49,6 @@ fn dispatched(knots: &Knots, degree: usize, first: usize, control: &[f64], ends_
 
 /// All coefficients at once: the one of lane `i` takes in the start `DEGREE - i` times and then the end.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
 fn blossoms<const DEGREE: usize>(
     knots: &Knots,
     first: usize,

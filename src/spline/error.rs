@@ -7,28 +7,22 @@ use thiserror::Error;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum SplineError {
-    /// Nothing to move.
     #[error("no joints")]
     NoJoints,
-    /// A trajectory leads from somewhere to somewhere.
     #[error("{points} key points; at least 2 are needed")]
     TooFewPoints { points: usize },
-    /// Arrays do not run in parallel.
     #[error("{found} values of {quantity}, {expected} expected")]
     LengthMismatch { quantity: &'static str, found: usize, expected: usize },
     /// A value is NaN, infinite, or too large to be cubed and squared.
     #[error("{quantity} {index} is not a number below 1e12 in magnitude: {value}")]
     NotFinite { quantity: &'static str, index: usize, value: f64 },
-    /// The time to move between two key points is none, or too short to be told from none.
     #[error("no time to move to key point {}: leaving at {leave_s} s, arriving at {arrive_s} s", index + 1)]
     NotIncreasing { index: usize, leave_s: f64, arrive_s: f64 },
     /// Intervals so unequal that rounding hides the solution.
     #[error("intervals are too unequal: rounding would grow {inverse:.1e} times")]
     IllConditioned { inverse: f64 },
-    /// Dwells are not at distinct key points in ascending order.
     #[error("dwell {} is at key point {}: dwells ascend and lie within the {points} key points", index + 1, point + 1)]
     BadDwell { index: usize, point: usize, points: usize },
-    /// A rest of negative length.
     #[error("the dwell at key point {} lasts {length_s} s", point + 1)]
     NegativeDwell { point: usize, length_s: f64 },
     /// The trajectory begins or ends with a dwell, but not at rest.

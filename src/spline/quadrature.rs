@@ -79,7 +79,6 @@ impl Spline {
 
     /// By a rule of `L` nodes for jerk of degree `DEGREE`.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
     fn add_squared_jerk_by<const DEGREE: usize, const L: usize>(&self, rule: &Rule<L>, integral: &mut [f64]) {
         let stride = self.knots.controls() - 3;
         for (piece, ends) in self.knots.breaks().windows(2).enumerate() {

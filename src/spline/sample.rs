@@ -118,7 +118,6 @@ impl Spline {
 
     /// Fills columns from instants of one piece.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "must take on the vector width of its caller")]
     fn lanes<const DEGREE: usize, const WHOLE: bool>(
         &self,
         piece: usize,

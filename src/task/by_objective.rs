@@ -35,14 +35,12 @@ impl ByObjective {
     pub const ZERO: Self = Self([0.0; Objective::COUNT]);
 
     /// The same but for one.
-    #[must_use]
     pub const fn with(mut self, objective: Objective, value: f64) -> Self {
         self.0[objective as usize] = value;
         self
     }
 
     /// The same but for the objectives of a plan.
-    #[must_use]
     pub fn map_plan(mut self, of: impl Fn(Objective) -> f64) -> Self {
         for &objective in Objective::OF_PLAN {
             self[objective] = of(objective);

@@ -9,31 +9,23 @@ use thiserror::Error;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum TaskError {
-    /// The file cannot be read.
     #[error("cannot read the task {}: {reason}", path.display())]
     Read { path: PathBuf, reason: String },
-    /// The text is no TOML, or has keys that no task has.
     #[error("line {line}: {message}")]
     Syntax { line: usize, message: String },
-    /// A joint that the task does not declare.
     #[error("line {line}: {key} names the joint {joint:?}; the task's joints are {declared}")]
     UnknownJoint { line: usize, key: String, joint: String, declared: String },
-    /// A joint that is left out where all are needed.
     #[error("line {line}: {key} has no value for the joint {joint:?}; give one for each of {declared}")]
     MissingJoint { line: usize, key: String, joint: String, declared: String },
-    /// A joint given in degrees and in millimetres.
     #[error(
         "line {line}: {key} names the joint {joint:?}, which line {said} has under {other}; degrees are for a joint that turns, \
          millimetres for one that slides"
     )]
     TwoKinds { line: usize, key: String, joint: String, said: usize, other: String },
-    /// A list of the wrong length.
     #[error("line {line}: {key} has {found} values, {expected} are needed ({why})")]
     Length { line: usize, key: String, found: usize, expected: usize, why: &'static str },
-    /// A number outside what makes sense.
     #[error("line {line}: {key} is {found}; {expected}")]
     Value { line: usize, key: String, found: String, expected: &'static str },
-    /// A key point that says where it is twice, or not at all.
     #[error(
         "line {line}: a key point has either positions of the joints (angles_deg, positions_mm of those that slide) or tool, this one has {found}"
     )]

@@ -3,15 +3,12 @@
 use hydrotrace::{replay::Rules, series::Pair, units::DEGREE_RAD};
 use hydrotrace_bench::detector::{Sensing, detector_score};
 
-use crate::replay::{of, ramp, recorded};
+use crate::replay::{of, ramp, recorded, sampled};
 
 #[test]
 fn a_known_start_has_the_metrics_worked_out_by_hand() {
     // The joint waits 0.2 s, then follows at the planned speed: the error grows to 0.8 degrees.
-    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
-    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
-    let measured: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.2)).collect();
-    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..1000).collect()));
+    let found = of(&sampled(1000, |t| ramp(t, 2.0), |t| ramp(t, 2.2)));
     let transition = &found.transitions[0];
     let near = |got: f64, want: f64, tolerance: f64| assert!((got - want).abs() < tolerance, "{got} {want}");
     near(transition.planned_onset_s, 2.0, 0.01);
@@ -123,10 +120,7 @@ fn a_set_value_that_steps_is_a_start_at_the_step_at_any_rate() {
 #[test]
 fn a_log_that_begins_with_its_plan_shows_the_first_start() {
     for (off_deg, starts) in [(0.0, 1), (0.3, 0)] {
-        let t_s: Vec<f64> = (0..600).map(|k| 0.01 * f64::from(k)).collect();
-        let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 0.0)).collect();
-        let measured: Vec<f64> = t_s.iter().map(|&t| ramp(t, 0.3) + off_deg * DEGREE_RAD).collect();
-        let found = of(&recorded(t_s, planned, measured, std::iter::once(0..600).collect()));
+        let found = of(&sampled(600, |t| ramp(t, 0.0), |t| ramp(t, 0.3) + off_deg * DEGREE_RAD));
         assert_eq!(found.joints[0].starts, starts, "off by {off_deg} deg");
         if let Some(start) = found.transitions.first() {
             assert!(start.planned_onset_s.abs() < 0.011, "{}", start.planned_onset_s);

@@ -39,6 +39,14 @@ pub(crate) fn recorded(
     }
 }
 
+/// A hundred samples a second of a plan and a measurement, without a cut.
+pub(crate) fn sampled(n: usize, planned: impl Fn(f64) -> f64, measured: impl Fn(f64) -> f64) -> Pair {
+    let t_s: Vec<f64> = (0..n).map(|k| 0.01 * k as f64).collect();
+    let of = |at: &dyn Fn(f64) -> f64| t_s.iter().map(|t_s| at(*t_s)).collect();
+    let (planned, measured) = (of(&planned), of(&measured));
+    recorded(t_s, planned, measured, std::iter::once(0..n).collect())
+}
+
 /// A ramp from rest at `start_s`, of 4 degrees per second for 3 s.
 pub(crate) fn ramp(t_s: f64, start_s: f64) -> f64 {
     4.0 * DEGREE_RAD * (t_s - start_s).clamp(0.0, 3.0)
@@ -46,10 +54,7 @@ pub(crate) fn ramp(t_s: f64, start_s: f64) -> f64 {
 
 #[test]
 fn joints_that_turn_and_that_slide_are_found_by_thresholds_of_their_own() {
-    let t_s: Vec<f64> = (0..600).map(|k| f64::from(k) * 0.01).collect();
-    let along = |at_s: f64| t_s.iter().map(|t| ramp(*t, at_s)).collect();
-    let (planned, measured) = (along(1.0), along(1.2));
-    let turns = recorded(t_s, planned, measured, vec![Range { start: 0, end: 600 }]);
+    let turns = sampled(600, |t| ramp(t, 1.0), |t| ramp(t, 1.2));
     let slides = Pair { kind: JointKind::Slides, ..turns.clone() };
     let found = |rules: &Rules| [&turns, &slides].map(|pair| replay(from_ref(pair), rules).transitions.len());
     let (default, never) = (Rules::default(), 1.0);
@@ -251,10 +256,8 @@ proptest! {
 
 #[test]
 fn a_log_that_opens_in_motion_has_no_transition_there() {
-    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
-    let angle: Vec<f64> = t_s.iter().map(|&t| ramp(t, -1.0) + ramp(t, 6.0)).collect();
-    let n = t_s.len();
-    let found = of(&recorded(t_s, angle.clone(), angle, std::iter::once(0..n).collect()));
+    let angle = |t: f64| ramp(t, -1.0) + ramp(t, 6.0);
+    let found = of(&sampled(1000, angle, angle));
     assert_eq!(found.transitions.len(), 1);
     assert!((found.transitions[0].planned_onset_s - 6.0).abs() < 0.02);
     assert_eq!((found.joints[0].unplanned_starts, found.joints[0].unanswered_starts), (0, 0));
@@ -262,20 +265,18 @@ fn a_log_that_opens_in_motion_has_no_transition_there() {
 
 #[test]
 fn a_step_across_a_cut_is_no_motion() {
-    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
-    let angle: Vec<f64> = (0..800).map(|k| if k < 400 { 0.0 } else { 1.0 }).collect();
-    let found = of(&recorded(t_s.clone(), angle.clone(), angle.clone(), vec![0..400, 400..800]));
+    let angle = |t: f64| if t < 3.995 { 0.0 } else { 1.0 };
+    let whole = sampled(800, angle, angle);
+    let found = of(&Pair { segments: vec![0..400, 400..800], ..whole.clone() });
     assert!(found.transitions.is_empty() && found.stops.is_empty());
     assert!(!found.joints[0].moves && !found.joints[0].plan_moves);
     // Without the cut it is one.
-    let found = of(&recorded(t_s, angle.clone(), angle, std::iter::once(0..800).collect()));
-    assert!(found.joints[0].moves);
+    assert!(of(&whole).joints[0].moves);
 }
 
 #[test]
 fn a_joint_at_rest_gets_no_invented_numbers() {
-    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
-    let found = of(&recorded(t_s, vec![0.5; 800], vec![0.49; 800], std::iter::once(0..800).collect()));
+    let found = of(&sampled(800, |_| 0.5, |_| 0.49));
     let joint = &found.joints[0];
     assert!(!joint.moves && !joint.plan_moves);
     assert_eq!((joint.lag_s, joint.lag_correlation, joint.lag_interval_s), (None, None, None));
@@ -285,9 +286,7 @@ fn a_joint_at_rest_gets_no_invented_numbers() {
 
 #[test]
 fn a_joint_that_ignores_its_plan_has_an_unmatched_start_without_onset() {
-    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
-    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
-    let found = of(&recorded(t_s, planned, vec![0.0; 800], std::iter::once(0..800).collect()));
+    let found = of(&sampled(800, |t| ramp(t, 2.0), |_| 0.0));
     assert_eq!((found.joints[0].starts, found.joints[0].unanswered_starts), (1, 1));
     let transition = &found.transitions[0];
     assert_eq!((transition.measured_onset_s, transition.onset_delay_s), (None, None));
@@ -298,11 +297,8 @@ fn a_joint_that_ignores_its_plan_has_an_unmatched_start_without_onset() {
 #[test]
 fn a_joint_that_creeps_into_its_motion_answers_without_an_instant() {
     // It has crept at 0.3 degrees per second for 1.4 s when its plan starts.
-    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
-    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
     let creep = |t: f64| 0.3 * DEGREE_RAD * (t - 0.6).clamp(0.0, 1.4);
-    let measured = t_s.iter().map(|&t| creep(t) + ramp(t, 2.0)).collect();
-    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..1000).collect()));
+    let found = of(&sampled(1000, |t| ramp(t, 2.0), |t| creep(t) + ramp(t, 2.0)));
     assert_eq!(found.transitions[0].answer, Answer::Creeps);
     assert_eq!((found.transitions[0].measured_onset_s, found.transitions[0].onset_delay_s), (None, None));
     let joint = &found.joints[0];
@@ -311,14 +307,11 @@ fn a_joint_that_creeps_into_its_motion_answers_without_an_instant() {
 
 #[test]
 fn a_joint_that_hunts_when_its_plan_starts_answers_without_an_instant_and_one_that_settled_with_one() {
-    let t_s: Vec<f64> = (0..1200).map(|k| 0.01 * f64::from(k)).collect();
     let found = |until_s: f64, hz: f64| {
-        let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 6.0)).collect();
         let swing = |t: f64| {
             if t < until_s { 0.1 * DEGREE_RAD * (std::f64::consts::TAU * hz * t).sin() } else { 0.0 }
         };
-        let measured = t_s.iter().map(|&t| swing(t) + ramp(t, 6.3)).collect();
-        let found = of(&recorded(t_s.clone(), planned, measured, std::iter::once(0..1200).collect()));
+        let found = of(&sampled(1200, |t| ramp(t, 6.0), |t| swing(t) + ramp(t, 6.3)));
         (found.transitions[0].answer, found.transitions[0].onset_delay_s)
     };
     for hz in [0.8, 1.5, 2.0] {
@@ -333,11 +326,8 @@ fn a_joint_that_hunts_when_its_plan_starts_answers_without_an_instant_and_one_th
 #[test]
 fn a_drift_of_the_plan_just_before_a_large_move_says_nothing_of_the_joint() {
     // 0.35 degrees one way in half a second, then 12 the other way, which the joint follows.
-    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
     let drift = |t: f64| 0.7 * DEGREE_RAD * (t - 2.0).clamp(0.0, 0.5);
-    let planned: Vec<f64> = t_s.iter().map(|&t| drift(t) - ramp(t, 2.55)).collect();
-    let measured: Vec<f64> = t_s.iter().map(|&t| -ramp(t, 2.65)).collect();
-    let pair = recorded(t_s.clone(), planned, measured, std::iter::once(0..1000).collect());
+    let pair = sampled(1000, |t| drift(t) - ramp(t, 2.55), |t| -ramp(t, 2.65));
     let found = of(&pair);
     let answers = |found: &Replay| found.transitions.iter().map(|t| t.answer).collect::<Vec<Answer>>();
     assert_eq!(answers(&found), [Answer::Unclear, Answer::Timed]);
@@ -347,18 +337,13 @@ fn a_drift_of_the_plan_just_before_a_large_move_says_nothing_of_the_joint() {
     assert_eq!((found.joints[0].unanswered_starts, found.joints[0].undated_starts), (0, 1));
     // The same drift, had it gone on: a joint that stands still then is one that does not answer.
     let drift = |t: f64| 0.4 * DEGREE_RAD * (t - 2.0).clamp(0.0, 2.0);
-    let planned: Vec<f64> = t_s.iter().map(|&t| drift(t) - ramp(t, 4.5)).collect();
-    let measured: Vec<f64> = t_s.iter().map(|&t| -ramp(t, 4.6)).collect();
-    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..1000).collect()));
+    let found = of(&sampled(1000, |t| drift(t) - ramp(t, 4.5), |t| -ramp(t, 4.6)));
     assert_eq!(answers(&found), [Answer::Never, Answer::Timed]);
 }
 
 /// How much of the error the lag of a joint explains that follows a ramp of 4 degrees per second, 3 s long, so.
 fn lag_share(follow: impl Fn(f64) -> f64) -> f64 {
-    let t_s: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
-    let planned = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
-    let measured = t_s.iter().map(|&t| follow(t)).collect();
-    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..1000).collect()));
+    let found = of(&sampled(1000, |t| ramp(t, 2.0), follow));
     assert_eq!(found.joints[0].lag_share, found.whole_run.lag_share);
     found.whole_run.lag_share.unwrap().share
 }
@@ -376,20 +361,15 @@ fn a_lag_explains_the_error_of_a_delayed_joint_and_not_that_of_a_late_start_or_a
 
 #[test]
 fn a_stop_across_a_cut_answers_nothing() {
-    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
-    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
-    let measured: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.6)).collect();
-    let found = of(&recorded(t_s, planned, measured, vec![0..520, 520..800]));
+    let whole = sampled(800, |t| ramp(t, 2.0), |t| ramp(t, 2.6));
+    let found = of(&Pair { segments: vec![0..520, 520..800], ..whole });
     let stops: Vec<_> = found.stops.iter().map(|s| (s.planned_s.is_some(), s.measured_s.is_some())).collect();
     assert_eq!(stops, [(true, false), (false, true)]);
 }
 
 #[test]
 fn a_joint_that_moves_the_other_way_answers_nothing() {
-    let t_s: Vec<f64> = (0..800).map(|k| 0.01 * f64::from(k)).collect();
-    let planned: Vec<f64> = t_s.iter().map(|&t| ramp(t, 2.0)).collect();
-    let measured = t_s.iter().map(|&t| -ramp(t, 2.1)).collect();
-    let found = of(&recorded(t_s, planned, measured, std::iter::once(0..800).collect()));
+    let found = of(&sampled(800, |t| ramp(t, 2.0), |t| -ramp(t, 2.1)));
     assert_eq!((found.joints[0].unanswered_starts, found.joints[0].unplanned_starts), (1, 1));
     assert_eq!(found.transitions[0].measured_onset_s, None);
 }

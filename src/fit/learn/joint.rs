@@ -19,7 +19,7 @@ use super::{
     stop::Stop,
 };
 use crate::{
-    math::{deviation, lowpass},
+    math::{deviation, lowpass, smooth_step},
     series::{JointKind, Track},
     units::DEGREE_RAD,
 };
@@ -368,10 +368,4 @@ fn fade(steps: usize, free: &[Range<usize>]) -> Vec<f64> {
         }
     }
     weight
-}
-
-/// From 0 to 1 with zero speed and acceleration at both.
-fn smooth_step(share: f64) -> f64 {
-    let x = share.clamp(0.0, 1.0);
-    x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
 }

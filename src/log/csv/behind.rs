@@ -11,13 +11,11 @@ use super::{
 };
 
 /// The text with plain numbers below headers that name the unit.
-pub(super) fn without_units<'a>(file: &str, text: Cow<'a, [u8]>, options: &CsvOptions) -> Cow<'a, [u8]> {
-    let Some((dialect, head)) = looked_at(file, &text, options) else { return text };
+pub(super) fn without_units(file: &str, text: &[u8], options: &CsvOptions) -> Option<Vec<u8>> {
+    let (dialect, head) = looked_at(file, text, options)?;
     let units: Vec<Option<Unit>> = (0..dialect.width).map(|column| unit_of(&head, column)).collect();
-    if units.iter().all(Option::is_none) {
-        return text;
-    }
-    let plain = rewritten(&text, dialect.separator, |line, record, plain| {
+    units.iter().flatten().next()?;
+    rewritten(text, dialect.separator, |line, record, plain| {
         let cells = record.iter().zip(units.iter().copied().chain(std::iter::repeat(None)));
         let cells = cells.map(|(cell, unit)| match unit {
             Some(unit) if line == head.line => {
@@ -29,8 +27,7 @@ pub(super) fn without_units<'a>(file: &str, text: Cow<'a, [u8]>, options: &CsvOp
             _ => Cow::Borrowed(cell),
         });
         plain.write_record(cells)
-    });
-    plain.map_or(text, Cow::Owned)
+    })
 }
 
 /// The first unit of a column in which most cells have one. Times are read with theirs.
@@ -62,8 +59,8 @@ mod tests {
     use super::*;
 
     fn of(text: &str) -> String {
-        let plain = without_units("a.csv", Cow::Borrowed(text.as_bytes()), &CsvOptions::default());
-        String::from_utf8(plain.into_owned()).unwrap()
+        let plain = without_units("a.csv", text.as_bytes(), &CsvOptions::default());
+        plain.map_or(text.to_owned(), |plain| String::from_utf8(plain).unwrap())
     }
 
     #[test]

@@ -214,7 +214,7 @@ impl Look<'_> {
         const MILLIONTHS: [f64; 2] = [1e6 * SINCE_1899_DAYS[0], 1e6 * SINCE_1899_DAYS[1]];
         let value = |cell: &[u8]| number(cell, self.dialect.decimal_comma);
         let dated = |other: usize| {
-            DateForm::fitting(&self.cells(other)).first().is_some_and(|form| form.part() == Part::Local)
+            DateForm::fitting(&self.cells(other)).first().is_some_and(|form| form.part == Part::Local)
         };
         self.head.names[column].eq_ignore_ascii_case("time_ms")
             && self

@@ -10,7 +10,7 @@ pub(super) struct DateForm {
     items: Vec<Item<'static>>,
     /// For a person, such as "dd.mm.yyyy hh:mm:ss".
     pub(super) name: &'static str,
-    part: Part,
+    pub(super) part: Part,
     /// Digits of what stands behind the seconds where that counts ms, us or ns, without zeros before: `10:00:00:5`; else 0.
     pub(super) counts: usize,
 }
@@ -94,10 +94,6 @@ impl DateForm {
         }
         let mut counting = [3, 6, 9].map(|counts| Self { counts, ..self.clone() }).into_iter();
         counting.find(rises).unwrap_or(self)
-    }
-
-    pub(super) fn part(&self) -> Part {
-        self.part
     }
 
     /// The instant in a cell, ns since 1970 (UTC where the text gives no zone), or since midnight

@@ -17,7 +17,7 @@ impl Look<'_> {
     pub(super) fn dates(&self) -> Vec<Found> {
         let is = |column: &usize| {
             let forms = self.forms(*column);
-            !self.labels[*column].is_time && forms.first().is_some_and(|form| form.part() != Part::Elapsed)
+            !self.labels[*column].is_time && forms.first().is_some_and(|form| form.part != Part::Elapsed)
         };
         let columns = (0..self.labels.len()).filter(is);
         columns.filter_map(|column| self.column(column).ok()).filter(|found| found.steady).collect()
@@ -27,7 +27,7 @@ impl Look<'_> {
     pub(super) fn join_day_and_time(&self, usable: &mut Vec<Found>) {
         let of = |part: Part| {
             usable.iter().find_map(|found| match &found.source {
-                TimeSource::Date { column, form } if form.part() == part => Some((*column, form.clone())),
+                TimeSource::Date { column, form } if form.part == part => Some((*column, form.clone())),
                 _ => None,
             })
         };

@@ -15,64 +15,51 @@ use crate::{
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum CsvError {
-    /// The file system said no.
     #[error("cannot open {}", path.display())]
     File { path: PathBuf, source: std::io::Error },
-    /// The file is something else.
     #[error("{file} is no CSV file: {found}; {fix}")]
     NotText { file: String, found: String, fix: &'static str },
-    /// The file has no two rows of as many cells, or no numbers in them.
     #[error(
         "found no table of numbers in {file}: {found}; two columns or more are expected; if the cells are \
          separated by something else, say --separator CHAR"
     )]
     NoTable { file: String, found: String },
-    /// A column that the caller named.
     #[error(
         "no column {column:?} (for {option}){}; the columns are {present}",
         suggestion(nearest.as_deref())
     )]
     NoColumn { column: String, option: String, nearest: Option<String>, present: String },
-    /// A header that the caller named stands over several columns.
     #[error(
         "column {column:?} (for {option}) occurs {count} times; say which one by its number, such as #{first}"
     )]
     SameHeader { column: String, option: String, count: usize, first: usize },
-    /// Two columns would be the same angle.
     #[error("columns {columns} both look like the {what} of {joint}; say which with {option} {joint}=#N,...")]
     Twice { columns: String, what: String, joint: String, option: &'static str },
-    /// One column is named for two things.
     #[error("column {column:?} (#{number}) is named for two things; one column is one angle of one joint")]
     SameColumn { column: String, number: usize },
-    /// Rows of several machines.
     #[error(
         "column {column:?} tells several machines apart ({known}), and a log is of one; say which with \
          --only '{column}={first}', or --only '{column}=*' if all rows are of one"
     )]
     Machines { column: String, known: String, first: String },
-    /// Rows that the caller named.
     #[error("no row has {value:?} in column {column:?}; there are {known}")]
     NoMachine { column: String, value: String, known: String },
-    /// No column is a joint's angle.
     #[error(
         "no column looks like a joint angle{why}; the columns are {present}; name them with \
          --planned JOINT=COLUMN,... and --measured JOINT=COLUMN,..., or in a file with --map"
     )]
     NoJoints { why: String, present: String },
-    /// All columns of joints are in a unit of another kind.
     #[error(
         "column {column:?} is in {unit}, which is no angle or length; say what one is with \
          --planned JOINT=FACTOR*COLUMN,... --measured JOINT=FACTOR*COLUMN,... --degrees, or --slides JOINT=mm of a joint \
          that slides"
     )]
     OddUnit { column: String, unit: &'static str },
-    /// Planned and measured columns are of different joints.
     #[error(
         "the planned columns are of {planned}, the measured ones of {measured}: no joint has both; say \
          --planned JOINT=COLUMN,... and --measured JOINT=COLUMN,... with the same joints"
     )]
     NoPair { planned: String, measured: String },
-    /// Joints of plan and measurement are counted from different numbers.
     #[error(
         "planned columns are of {planned}, measured ones of {measured}: they are counted from different numbers; say which belong together, \
          such as {}",
@@ -85,16 +72,13 @@ pub enum CsvError {
          such as x_m or x_mm"
     )]
     PoseUnit,
-    /// An orientation without a position.
     #[error(
         "columns qx, qy, qz and qw are the orientation of a tool, and no column is its position: no joint of an arm; give those of x, y and z, \
          with their unit, too"
     )]
     OrientationAlone,
-    /// An interface of a joint that the log does not have.
     #[error("{what} names the joint {joint:?}{}; the joints are {present}", suggestion(nearest.as_deref()))]
     NoJoint { what: String, joint: String, nearest: Option<String>, present: String },
-    /// There is no time.
     #[error(
         "no column looks like a time{why}; the columns are {present}; {}",
         if let Some(time) = by_number.first() {
@@ -104,12 +88,10 @@ pub enum CsvError {
         else { "rows of one instant may be of several joints: call the column that names the joint \"joint\"; else say --rate HZ if a row comes HZ times a second, or --time COLUMN".to_owned() }
     )]
     NoTime { why: String, present: String, by_number: Vec<String> },
-    /// A column of time that does not say its unit.
     #[error(
         "column {column:?} counts time in steps of {step}; say in what with --time-unit s|ms|us|ns|min|h, or give --rate HZ"
     )]
     TimeUnit { column: String, step: f64 },
-    /// Angles without a unit, too large for radians.
     #[error(
         "column {column:?} {says} and reaches {}, too far for radians; say --degrees, --radians, or \
          --slides JOINT=mm of a joint that slides{}",
@@ -121,7 +103,6 @@ pub enum CsvError {
         }
     )]
     AngleUnit { column: String, says: String, reach: f64 },
-    /// Numbers without a unit, too large for degrees, too.
     #[error(
         "column {column:?} {says} and reaches {}, too far for degrees, too: is it in steps of an encoder? Say what \
          one is with --planned JOINT=FACTOR*COLUMN,... --measured JOINT=FACTOR*COLUMN,... --degrees, or --slides \
@@ -141,35 +122,29 @@ pub enum CsvError {
          with --time, --planned and --measured which columns count"
     )]
     NotByRows { had: &'static str },
-    /// The header names fewer columns than the rows have.
     #[error(
         "the header, line {line}, has {names} names and every row has {cells} cells: which of them has no name cannot be \
          told; correct the header, or name columns by their number, such as --time '#1' --planned 'JOINT=#2' \
          --measured 'JOINT=#3'"
     )]
     ShortHeader { line: u64, names: usize, cells: usize },
-    /// A second header with other names.
     #[error(
         "line {line} is a header with other columns than line {first}: what is below it has another meaning; give the rows \
          above and below it as two files{}",
         two_files(file, *line)
     )]
     AnotherHeader { file: String, line: u64, first: u64 },
-    /// A column in a unit of something else.
     #[error(
         "column {column:?} is in {unit}, which is no {expected}; map another column or correct its header"
     )]
     WrongUnit { column: String, unit: String, expected: &'static str },
-    /// A sum of columns in different units.
     #[error("{text:?} adds {} to {}; columns of one unit are expected", units[0], units[1])]
     MixedUnits { text: String, units: [String; 2] },
-    /// A joint that turns by one column and slides by another.
     #[error(
         "the columns of {joint} are in {} and in {}; a joint turns (rad, deg) or slides (m, cm, mm)",
         units[0], units[1]
     )]
     MixedKinds { joint: String, units: [String; 2] },
-    /// A column that is used and mostly holds no numbers.
     #[error(
         "{numbers} cells of column {column:?} are numbers with a decimal {decimal}, {bad} are not{example}; {fix}"
     )]
@@ -181,7 +156,6 @@ pub enum CsvError {
         example: String,
         fix: &'static str,
     },
-    /// Most rows have no time.
     #[error(
         "{stamped} rows have a time between 1970 and 2038 in column {column:?}, {bad} have {have}{example}; {fix}"
     )]
@@ -193,13 +167,10 @@ pub enum CsvError {
         example: String,
         fix: &'static str,
     },
-    /// A value of an option.
     #[error("{option} {found}: {expected} is expected")]
     Option { option: &'static str, found: String, expected: &'static str },
-    /// The map file.
     #[error("cannot use the map {}: {reason}", path.display())]
     MapFile { path: PathBuf, reason: String },
-    /// The log cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
 }

@@ -7,6 +7,7 @@ use super::{
     dialect::Dialect,
     head::looked_at,
     label::label,
+    marks::{in_threes, other},
     number::{Looks, looks},
     rows::rewritten,
 };
@@ -85,7 +86,7 @@ enum Groups {
 fn groups(cell: &[u8], mark: u8) -> Option<Groups> {
     let cell = cell.trim_ascii();
     let digits = cell.strip_prefix(b"-").or_else(|| cell.strip_prefix(b"+")).unwrap_or(cell);
-    let other = if mark == b',' { b'.' } else { b',' };
+    let other = other(mark);
     let numeric = |byte: &u8| byte.is_ascii_digit() || *byte == mark || *byte == other;
     if digits.is_empty() || !digits.iter().all(numeric) || !digits[0].is_ascii_digit() {
         return None;
@@ -101,10 +102,7 @@ fn groups(cell: &[u8], mark: u8) -> Option<Groups> {
             None => Groups::Short,
         });
     }
-    let in_threes = whole.split(|byte| *byte == mark).enumerate().all(|(k, group)| match k {
-        0 => (1..=3).contains(&group.len()) && group[0] != b'0',
-        _ => group.len() == 3,
-    });
+    let in_threes = in_threes(whole, mark);
     let plain = decimals.is_none_or(|decimals| decimals.iter().all(u8::is_ascii_digit));
     let several = memchr::memchr(mark, whole) != memchr::memrchr(mark, whole);
     Some(match (in_threes && plain, decimals.is_some() || several) {

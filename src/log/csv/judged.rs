@@ -1,7 +1,5 @@
 //! Rows that the recorder itself calls bad, as historians do beside each value.
 
-use std::borrow::Cow;
-
 use ::csv::ByteRecord;
 
 use super::{
@@ -27,19 +25,6 @@ const MOST: u64 = 5;
 /// In the quality of OPC, 0 to 255, good begins with 192, and below 64 all is bad.
 const OPC_GOOD: &str = "192";
 const OPC_BELOW_IS_BAD: u8 = 64;
-
-/// The table without the rows that a column of its own calls bad.
-pub(super) fn without_bad<'a>(
-    file: &str,
-    text: Cow<'a, [u8]>,
-    options: &CsvOptions,
-    remarks: &mut Remarks,
-) -> Cow<'a, [u8]> {
-    match kept(file, &text, options, remarks) {
-        Some(kept) => Cow::Owned(kept),
-        None => text,
-    }
-}
 
 /// What tells a bad row.
 #[derive(Debug)]
@@ -96,7 +81,13 @@ fn opc(cell: &[u8]) -> Option<u8> {
     cell_text(cell).parse().ok()
 }
 
-fn kept(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Option<Vec<u8>> {
+/// The table without the rows that a column of its own calls bad.
+pub(super) fn without_bad(
+    file: &str,
+    text: &[u8],
+    options: &CsvOptions,
+    remarks: &mut Remarks,
+) -> Option<Vec<u8>> {
     let (dialect, head) = looked_at(file, text, options)?;
     let judge = Judge::of(&head)?;
     let (mut bad, mut rows) = (0, 0);
@@ -120,14 +111,9 @@ mod tests {
     fn rows_that_are_called_bad_are_left_out_and_counted() {
         let of = |text: &str| {
             let mut remarks = Remarks::default();
-            let kept = without_bad(
-                "a.csv",
-                Cow::Owned(text.as_bytes().to_vec()),
-                &CsvOptions::default(),
-                &mut remarks,
-            );
+            let kept = without_bad("a.csv", text.as_bytes(), &CsvOptions::default(), &mut remarks);
             let counts = remarks.as_slice().iter().map(|remark| remark.count).sum::<u64>();
-            (String::from_utf8(kept.into_owned()).unwrap(), counts)
+            (kept.map_or(text.to_owned(), |kept| String::from_utf8(kept).unwrap()), counts)
         };
         let text = "t,q,Quality\n0,1,Good\n1,0,Bad\n2,1,Good\n3,0,bad\n";
         assert_eq!(of(text), ("t,q,Quality\n0,1,Good\n2,1,Good\n".into(), 2));

@@ -1,7 +1,5 @@
 //! Cells that hold a list each, as programs in Python write what messages of ROS hold: `"(0.17, -0.69)"`, `[ 0.17 -0.69]`.
 
-use std::borrow::Cow;
-
 use ::csv::ByteRecord;
 
 use super::{
@@ -22,14 +20,7 @@ enum Holds {
 }
 
 /// The table with a column for each number of a list; the names of joints in a list of names are theirs.
-pub(super) fn widened(text: Cow<'_, [u8]>) -> Cow<'_, [u8]> {
-    match wide(&text) {
-        Some(wide) => Cow::Owned(wide),
-        None => text,
-    }
-}
-
-fn wide(text: &[u8]) -> Option<Vec<u8>> {
+pub(super) fn widened(text: &[u8]) -> Option<Vec<u8>> {
     let separator = [b',', b';', b'\t'].into_iter().find(|byte| holds_lists(text, *byte))?;
     let mut rows = Rows::new(text, Separator::Byte(separator));
     let mut record = ByteRecord::new();
@@ -122,7 +113,7 @@ mod tests {
     use super::*;
 
     fn of(text: &str) -> String {
-        String::from_utf8(widened(Cow::Borrowed(text.as_bytes())).into_owned()).unwrap()
+        widened(text.as_bytes()).map_or(text.to_owned(), |wide| String::from_utf8(wide).unwrap())
     }
 
     #[test]

@@ -282,7 +282,7 @@ impl Long {
             rows.sort_by_cached_key(|(_, time)| plain(time));
         } else if self.times.len() == 1
             && let Some(form) = DateForm::fitting(&rows.iter().map(|(_, time)| time[0].as_slice())).first()
-            && form.part() == Part::Local
+            && form.part == Part::Local
         {
             rows.sort_by_cached_key(|(_, time)| form.ns(&time[0]));
         }

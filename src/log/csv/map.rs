@@ -18,20 +18,13 @@ pub(in crate::log) const MAP_BEGINS: &str =
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct MapFile {
-    #[serde(skip_serializing_if = "Option::is_none")]
     separator: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     decimal_comma: Option<bool>,
     /// Column, then value.
-    #[serde(skip_serializing_if = "Option::is_none")]
     only: Option<[String; 2]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     time: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     time_unit: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     rate_hz: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     angle_unit: Option<AngleUnit>,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     slides: BTreeMap<String, LengthUnit>,

@@ -26,13 +26,13 @@ enum Says {
 }
 
 /// Whether digits are such as `1 234` with any mark between.
-fn in_threes(whole: &[u8], mark: u8) -> bool {
+pub(super) fn in_threes(whole: &[u8], mark: u8) -> bool {
     let mut groups = whole.split(|byte| *byte == mark);
     groups.next().is_some_and(|first| (1..=3).contains(&first.len()) && first[0] != b'0')
         && groups.all(|group| group.len() == 3)
 }
 
-const fn other(mark: u8) -> u8 {
+pub(super) const fn other(mark: u8) -> u8 {
     if mark == b',' { b'.' } else { b',' }
 }
 

@@ -189,10 +189,10 @@ fn read_table(
     options: &CsvOptions,
     mut remarks: Remarks,
 ) -> Result<CsvRun, CsvError> {
-    let text = lists::widened(text);
+    let text = lists::widened(&text).map_or(text, Cow::Owned);
     let text = only::of_one(name, text, options)?;
-    let text = judged::without_bad(name, text, options, &mut remarks);
-    let text = unpadded::padded(name, text, options, &mut remarks);
+    let text = judged::without_bad(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
+    let text = unpadded::padded(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
     let (text, form, _) = in_one_form(name, text, options, &mut remarks);
     let (run, _) = Form::of(name, &text, &form, &mut remarks)?.read(name, &text, remarks)?;
     Ok(run.given(options.given()))
@@ -216,7 +216,7 @@ fn in_one_form<'a>(
 ) -> (Cow<'a, [u8]>, CsvOptions, Option<&'static str>) {
     let mut had = None;
     let before = text.len();
-    let text = behind::without_units(name, text, options);
+    let text = behind::without_units(name, &text, options).map_or(text, Cow::Owned);
     let text = grouping::plain(name, text, options, remarks);
     // Both leave marks and letters out.
     if text.len() != before {

@@ -75,14 +75,11 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
+    const ALL: [Self; 3] = [Self::Millimetres, Self::Centimetres, Self::Metres];
+
     /// Reads a unit as a person types it.
     pub fn parse(text: &str) -> Option<Self> {
-        match text {
-            "mm" => Some(Self::Millimetres),
-            "cm" => Some(Self::Centimetres),
-            "m" => Some(Self::Metres),
-            _ => None,
-        }
+        Self::ALL.into_iter().find(|unit| unit.name() == text)
     }
 
     /// Reads `JOINT=UNIT`, or `JOINT` alone for m; `None` for another unit.
@@ -148,7 +145,6 @@ impl CsvOptions {
     }
 
     /// These options, completed by those of `other`.
-    #[must_use]
     pub fn or(mut self, other: Self) -> Self {
         self.separator = self.separator.or(other.separator);
         self.decimal_comma = self.decimal_comma.or(other.decimal_comma);

@@ -53,7 +53,6 @@ pub struct CsvRun {
 
 impl CsvRun {
     /// The measurement alone.
-    #[must_use]
     pub(in crate::log) fn measured(mut self) -> Self {
         self.layout.uses.retain(|one| one.role == Role::Measured);
         self

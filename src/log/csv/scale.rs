@@ -8,32 +8,17 @@ use super::{
 };
 
 /// Words that stand for a factor, and compounds begin with: `zehntelgrad`.
-const SCALES: [(&str, f64); 23] = [
-    ("tenths", 0.1),
-    ("tenth", 0.1),
-    ("deci", 0.1),
-    ("dezi", 0.1),
-    ("zehntel", 0.1),
-    ("hundredths", 0.01),
-    ("hundredth", 0.01),
-    ("centi", 0.01),
-    ("zenti", 0.01),
-    ("hundertstel", 0.01),
-    ("thousandths", 1e-3),
-    ("thousandth", 1e-3),
-    ("milli", 1e-3),
-    ("tausendstel", 1e-3),
-    ("micro", 1e-6),
-    ("mikro", 1e-6),
-    ("nano", 1e-9),
-    ("kilo", 1e3),
-    ("half", 0.5),
-    ("halbe", 0.5),
-    ("quarter", 0.25),
-    ("pi", PI),
-    ("π", PI),
+const SCALES: [(f64, &str); 9] = [
+    (0.1, "tenths tenth deci dezi zehntel"),
+    (0.01, "hundredths hundredth centi zenti hundertstel"),
+    (1e-3, "thousandths thousandth milli tausendstel"),
+    (1e-6, "micro mikro"),
+    (1e-9, "nano"),
+    (1e3, "kilo"),
+    (0.5, "half halbe"),
+    (0.25, "quarter"),
+    (PI, "pi π"),
 ];
-
 /// Between a scale and its unit.
 const FILLERS: [&str; 6] = ["of", "a", "an", "one", "the", "eines"];
 
@@ -51,23 +36,27 @@ fn tokens(text: &str) -> Vec<(usize, &str)> {
     pieces.filter(|(_, token)| !token.is_empty()).collect()
 }
 
+fn scales() -> impl Iterator<Item = (&'static str, f64)> {
+    SCALES.iter().flat_map(|(factor, words)| words.split(' ').map(|word| (word, *factor)))
+}
+
 /// The scaled unit that begins at a token, and its last token; `text` is in lower case.
 fn scaled_at(text: &str, tokens: &[(usize, &str)], at: usize) -> Option<(usize, Unit)> {
     let word = tokens.get(at)?.1;
-    let Some((name, factor)) = SCALES.iter().find(|(scale, _)| *scale == word) else {
-        let unit = SCALES.iter().find_map(|(scale, factor)| {
+    let Some((name, factor)) = scales().find(|(scale, _)| *scale == word) else {
+        let unit = scales().find_map(|(scale, factor)| {
             let name = word.strip_prefix(scale).filter(|name| name.chars().count() >= SHORTEST)?;
-            scale_by(*factor, name)
+            scale_by(factor, name)
         });
         return Some((at, unit?));
     };
     let unit_at = (at + 1..tokens.len()).find(|&at| !FILLERS.contains(&tokens[at].1))?;
     let ends = [unit_at + 1, unit_at].into_iter().filter(|end| *end < tokens.len());
     let found = ends.map(|end| (end, &text[tokens[unit_at].0..tokens[end].0 + tokens[end].1.len()]));
-    let fits = |unit: &str| !["pi", "π"].contains(name) || unit.starts_with("rad");
+    let fits = |unit: &str| !["pi", "π"].contains(&name) || unit.starts_with("rad");
     let (end, unit) = found
         .filter(|(_, unit)| fits(unit))
-        .find_map(|(end, unit)| Some((end, scale_by(*factor, &unit.replace('°', "deg"))?)))?;
+        .find_map(|(end, unit)| Some((end, scale_by(factor, &unit.replace('°', "deg"))?)))?;
     // Of `milli_deg_per_s` the unit is not all that is meant.
     let more = tokens.get(end + 1).is_some_and(|(_, next)| ["s", "sec", "per"].contains(next));
     Some((end, if more { ANOTHER } else { unit }))

@@ -122,7 +122,6 @@ impl TableStream {
     }
 
     /// The same, said to come from a file of this name.
-    #[must_use]
     pub fn named(mut self, file: String) -> Self {
         self.run.understood.file = file;
         self

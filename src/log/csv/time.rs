@@ -99,7 +99,7 @@ impl TimeSource {
         match self {
             Self::Rate { hz } => format!("none used; rows come at {hz} Hz as given"),
             Self::Number { unit, .. } => format!("counts {}", unit.name),
-            Self::Date { form, .. } if form.part() == Part::Local => {
+            Self::Date { form, .. } if form.part == Part::Local => {
                 format!("{}, no zone, taken as UTC", form.name)
             }
             Self::Date { form, .. } => form.name.to_owned(),
@@ -138,7 +138,7 @@ impl TimeSource {
     pub(super) fn next_day(&self, before_ns: i64, ns: i64) -> bool {
         let whole =
             if let Self::WithPart { whole, .. } | Self::Spread { whole, .. } = self { whole } else { self };
-        matches!(whole, Self::Date { form, .. } if form.part() == Part::TimeOfDay)
+        matches!(whole, Self::Date { form, .. } if form.part == Part::TimeOfDay)
             && before_ns.saturating_sub(ns) > Self::DAY_NS / 2
     }
 

@@ -1,7 +1,5 @@
 //! Times whose fraction was written without the zeros before it, as `printf("%ld.%ld", s, us)` does: `7.90000` comes before `7.100000`.
 
-use std::borrow::Cow;
-
 use ::csv::ByteRecord;
 
 use super::{
@@ -16,16 +14,12 @@ use crate::remark::{Code, Remarks};
 const DIGITS: [usize; 3] = [3, 6, 9];
 
 /// The table with the zeros, where only with them a time rises from row to row.
-pub(super) fn padded<'a>(
+pub(super) fn padded(
     file: &str,
-    text: Cow<'a, [u8]>,
+    text: &[u8],
     options: &CsvOptions,
     remarks: &mut Remarks,
-) -> Cow<'a, [u8]> {
-    with_zeros(file, &text, options, remarks).map_or(text, Cow::Owned)
-}
-
-fn with_zeros(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut Remarks) -> Option<Vec<u8>> {
+) -> Option<Vec<u8>> {
     let (dialect, head) = looked_at(file, text, options)?;
     let is_time = |at: &usize| {
         let given = options.time.as_deref().is_some_and(|time| time == head.names[*at]);
@@ -95,8 +89,8 @@ mod tests {
     fn of(times: &[&str]) -> (Vec<String>, usize) {
         let text = times.iter().fold("time,q\n".to_owned(), |text, time| format!("{text}{time},1\n"));
         let mut remarks = Remarks::default();
-        let table = padded("a.csv", Cow::Owned(text.into_bytes()), &CsvOptions::default(), &mut remarks);
-        let table = String::from_utf8(table.into_owned()).unwrap();
+        let table = padded("a.csv", text.as_bytes(), &CsvOptions::default(), &mut remarks);
+        let table = table.map_or(text, |table| String::from_utf8(table).unwrap());
         let cells = table.lines().skip(1).map(|line| line.split(',').next().unwrap().to_owned());
         (cells.collect(), remarks.as_slice().len())
     }

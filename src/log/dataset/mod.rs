@@ -63,13 +63,10 @@ pub struct Table {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum DatasetError {
-    /// The file system said no.
     #[error("cannot read {}", path.display())]
     File { path: PathBuf, source: std::io::Error },
-    /// What is there is no table of such columns.
     #[error("{} is no table of this dataset: {reason}", path.display())]
     Form { path: PathBuf, reason: String },
-    /// The Parquet library said no.
     #[error("cannot make the Parquet table {name}")]
     Encode { name: &'static str, source: ParquetError },
 }

@@ -1,5 +1,6 @@
 //! The numbers and names in messages of a type.
 
+pub(super) use crate::log::source::{NANOSECONDS, SECONDS};
 use crate::log::{
     decode::{Slot, Want},
     schema::{Definition, Number, Shape},
@@ -35,9 +36,6 @@ const LAYOUT: &str = "layout";
 /// Fields that name what the numbers beside are of.
 const NAMES: [&str; 8] =
     ["name", "names", "joint", "joints", "joint_name", "joint_names", "axis", "axis_name"];
-
-pub(super) const SECONDS: [&str; 3] = ["sec", "secs", "seconds"];
-pub(super) const NANOSECONDS: [&str; 4] = ["nanosec", "nsec", "nsecs", "nanos"];
 
 impl Leaves {
     /// `None` of a type without numbers, or with more than a message of joints has.

@@ -222,16 +222,15 @@ fn counted(came_s: &[f64], period_s: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::{Stream, stream};
+    use crate::{
+        math::smooth_step,
+        rng::{Stream, stream},
+    };
     use rand_distr::{Distribution, Uniform};
 
     /// A move of 40 deg, a rest, and the way back.
     fn plan(t_s: f64) -> f64 {
-        let step = |from_s: f64| {
-            let x = ((t_s - from_s) / 4.0).clamp(0.0, 1.0);
-            x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
-        };
-        0.7 * (step(2.0) - step(9.0))
+        0.7 * (smooth_step((t_s - 2.0) / 4.0) - smooth_step((t_s - 9.0) / 4.0))
     }
 
     /// A log at 100 Hz of what was sent at instants, and how far what is read bends more than the plan, rad/s².

@@ -18,19 +18,16 @@ use super::file::ReadAt;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum RemoteError {
-    /// The program was built without the feature.
     #[error(
         "this build reads no object stores, and {address} lies in one; build it with `--features cloud`, mount the \
          store, or copy the logs"
     )]
     NotBuilt { address: String },
-    /// It is no address of a store.
     #[error(
         "{address:?} is no address of logs: {reason}; expected s3://BUCKET/PATH, gs://BUCKET/PATH, az://CONTAINER/PATH \
          or https://HOST/PATH, with * for any signs of a name and ** for any folders"
     )]
     Address { address: String, reason: String },
-    /// The store did not answer, or said no.
     #[error("cannot {action} {address}: {reason}")]
     Store { action: &'static str, address: String, reason: String },
 }

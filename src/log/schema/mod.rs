@@ -71,26 +71,20 @@ pub(super) struct Definition {
 #[derive(Debug, Clone, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub(super) enum SchemaError {
-    /// The text is of a kind that is not read.
     #[error("schema encoding {encoding:?} of {name:?} is not one of ros2msg, ros2idl, ros1msg")]
     Encoding { encoding: String, name: String },
-    /// A line that is no field.
     #[error("schema line {line} is no field: {text:?}")]
     Line {
         /// Line in the schema text, from 1.
         line: usize,
         text: String,
     },
-    /// A word where another was expected.
     #[error("schema has {found:?} where {expected} was expected")]
     Unexpected { found: String, expected: &'static str },
-    /// A type that the text does not define.
     #[error("type {name:?} is used in {within:?} but not defined")]
     Undefined { name: String, within: String },
-    /// More text than any message type has.
     #[error("schema {name:?} of {bytes} bytes is longer than {MAX_TEXT} bytes")]
     TooLong { name: String, bytes: usize },
-    /// No struct at all.
     #[error("schema {name:?} has no text")]
     Empty { name: String },
 }

@@ -32,9 +32,10 @@ pub(in crate::log) struct Field {
 }
 
 /// How messages of a type are laid out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(in crate::log) enum Form {
     /// Names once, arrays in parallel.
+    #[default]
     Table,
     /// A list of joints, each with its name and numbers.
     Groups,
@@ -62,8 +63,8 @@ pub(in crate::log) struct Spec {
     pub(in crate::log) alone: Option<String>,
 }
 
-const SECONDS: [&str; 3] = ["sec", "secs", "seconds"];
-const NANOSECONDS: [&str; 4] = ["nanosec", "nsec", "nsecs", "nanos"];
+pub(in crate::log) const SECONDS: [&str; 3] = ["sec", "secs", "seconds"];
+pub(in crate::log) const NANOSECONDS: [&str; 4] = ["nanosec", "nsec", "nsecs", "nanos"];
 const STAMPS: [&str; 3] = ["header.stamp", "stamp", "timestamp"];
 const NAMES: [&str; 3] = ["joint_names", "names", "name"];
 

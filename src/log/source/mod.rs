@@ -6,7 +6,7 @@ mod poses;
 mod table;
 mod versioned;
 
-pub(super) use kind::{Field, Form, Role, Spec, spec_for};
+pub(super) use kind::{Field, Form, NANOSECONDS, Role, SECONDS, Spec, spec_for};
 pub(super) use plans::{Plans, RawTrajectory};
 pub(super) use poses::{AXES, IN, Poses, is_field, unit};
 pub(super) use table::{MAX_JOINTS, Rows, Stamps, Table};

@@ -10,36 +10,27 @@ use thiserror::Error;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum WriteError {
-    /// There is no joint to write about.
     #[error("no joint names")]
     NoJoints,
-    /// A joint name that no reader could give back.
     #[error("joint name {index} is empty or holds a NUL: {name:?}")]
     BadJointName { index: usize, name: String },
-    /// A name of a quantity that no reader could give back.
     #[error("interface name {name:?} is empty or holds a NUL")]
     Interface { name: String },
-    /// A name of a frame, or a text, that no reader could give back.
     #[error("{kind} {name:?} is empty or holds a NUL")]
     Text { kind: &'static str, name: String },
-    /// Two joints or two topics of one name.
     #[error("{kind} {name} is given twice")]
     Duplicate { kind: &'static str, name: String },
-    /// A quantity is given for some joints only.
     #[error("{values} values of {quantity} for {joints} joints")]
     LengthMismatch { quantity: &'static str, joints: usize, values: usize },
     /// A time that messages cannot hold: stamps lie in 1970 to 2038, durations within 68 years.
     #[error("{quantity} {value_ns} ns does not fit a message")]
     TimeRange { quantity: &'static str, value_ns: i64 },
-    /// A rate at which no plan is written.
     #[error("the rate is {found} Hz; a rate from {least} to {most} Hz is expected")]
     Rate { found: f64, least: f64, most: f64 },
-    /// A plan of more samples than a log is made for.
     #[error(
         "a plan of {duration_s:.0} s at {rate_hz} Hz has more than {most} samples: give a lower rate, or a shorter plan"
     )]
     TooLong { duration_s: f64, rate_hz: f64, most: f64 },
-    /// The points of a trajectory do not follow each other.
     #[error("time from start does not increase at point {index}: {previous_ns} ns then {next_ns} ns")]
     NotIncreasing { index: usize, previous_ns: i64, next_ns: i64 },
     /// The file cannot be created, for one because it exists already.

@@ -68,24 +68,27 @@ pub struct LogWriter<W: Write> {
     mcap: Writer<NoSeek<W>>,
     joint_names: Vec<String>,
     cdr: Cdr,
-    channels: Channels,
+    /// By kind.
+    channels: [Channel; 11],
     log_delay_ns: i64,
     flush_interval_ns: Option<u64>,
     unflushed_since_ns: Option<u64>,
 }
 
-struct Channels {
-    planned: Channel,
-    measured: Channel,
-    command: Channel,
-    controller_state: Channel,
-    trajectory: Channel,
-    interfaces: Channel,
-    description: Channel,
-    planned_description: Channel,
-    transforms: Channel,
-    fixed_transforms: Channel,
-    tracking_error: Channel,
+/// Kinds of messages, each with a topic of its own.
+#[derive(Clone, Copy)]
+enum Kind {
+    Planned,
+    Measured,
+    Command,
+    ControllerState,
+    Trajectory,
+    Interfaces,
+    Description,
+    PlannedDescription,
+    Transforms,
+    FixedTransforms,
+    TrackingError,
 }
 
 impl LogWriter<BufWriter<File>> {
@@ -122,7 +125,8 @@ impl<W: Write> LogWriter<W> {
     pub fn new<S: AsRef<str>>(output: W, joint_names: &[S], options: Options) -> Result<Self, WriteError> {
         let joint_names: Vec<String> = joint_names.iter().map(|name| name.as_ref().to_owned()).collect();
         check_joint_names(&joint_names)?;
-        let channels = Channels::new(options.topics)?;
+        let channels = channels(options.topics);
+        check_distinct("topic", channels.iter().map(Channel::topic))?;
         let mcap = WriteOptions::new()
             .profile("ros2")
             .library(concat!("hydrotrace ", env!("CARGO_PKG_VERSION")))
@@ -170,13 +174,12 @@ impl<W: Write> LogWriter<W> {
         let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         message::encode_header(&mut self.cdr, stamp, &self.joint_names);
         message::encode_joint_state(&mut self.cdr, [position_rad, velocity_rad_s, effort_n_m]);
-        let channel = match role {
-            Role::Planned => &mut self.channels.planned,
-            Role::Measured => &mut self.channels.measured,
-            Role::Command => &mut self.channels.command,
+        let kind = match role {
+            Role::Planned => Kind::Planned,
+            Role::Measured => Kind::Measured,
+            Role::Command => Kind::Command,
         };
-        channel.send(&mut self.mcap, stamp, self.cdr.bytes())?;
-        self.flush_if_due(stamp)
+        self.send(kind, stamp)
     }
 
     /// Writes plan, measurement and error in one message:
@@ -192,8 +195,7 @@ impl<W: Write> LogWriter<W> {
         let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         message::encode_header(&mut self.cdr, stamp, &self.joint_names);
         message::encode_controller_state(&mut self.cdr, state)?;
-        self.channels.controller_state.send(&mut self.mcap, stamp, self.cdr.bytes())?;
-        self.flush_if_due(stamp)
+        self.send(Kind::ControllerState, stamp)
     }
 
     /// Writes named quantities of all joints, such as pressures, each with one value a joint in the
@@ -217,8 +219,7 @@ impl<W: Write> LogWriter<W> {
         let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         message::encode_header(&mut self.cdr, stamp, &self.joint_names);
         message::encode_interfaces(&mut self.cdr, joints, values);
-        self.channels.interfaces.send(&mut self.mcap, stamp, self.cdr.bytes())?;
-        self.flush_if_due(stamp)
+        self.send(Kind::Interfaces, stamp)
     }
 
     /// Writes a whole plan that starts at the stamp: `trajectory_msgs/msg/JointTrajectory`. No
@@ -254,8 +255,7 @@ impl<W: Write> LogWriter<W> {
         }
         message::encode_header(&mut self.cdr, stamp, &self.joint_names);
         message::encode_trajectory(&mut self.cdr, points)?;
-        self.channels.trajectory.send(&mut self.mcap, stamp, self.cdr.bytes())?;
-        self.flush_if_due(stamp)
+        self.send(Kind::Trajectory, stamp)
     }
 
     /// Writes named texts, outside the messages. Ends the chunk.
@@ -315,7 +315,9 @@ impl<W: Write> LogWriter<W> {
         Ok(self.mcap.into_inner().into_inner())
     }
 
-    fn flush_if_due(&mut self, stamp: Stamp) -> Result<(), WriteError> {
+    /// Sends the message that was encoded last, and flushes if that is due.
+    fn send(&mut self, kind: Kind, stamp: Stamp) -> Result<(), WriteError> {
+        self.channels[kind as usize].send(&mut self.mcap, stamp, self.cdr.bytes())?;
         let since_ns = *self.unflushed_since_ns.get_or_insert(stamp.log_time_ns);
         match self.flush_interval_ns {
             Some(interval_ns) if stamp.log_time_ns.abs_diff(since_ns) >= interval_ns => self.flush(),
@@ -324,32 +326,21 @@ impl<W: Write> LogWriter<W> {
     }
 }
 
-impl Channels {
-    fn new(topics: Topics) -> Result<Self, WriteError> {
-        let channels = Self {
-            planned: Channel::new(topics.planned, &JOINT_STATE),
-            measured: Channel::new(topics.measured, &JOINT_STATE),
-            command: Channel::new(topics.command, &JOINT_STATE),
-            controller_state: Channel::new(topics.controller_state, &CONTROLLER_STATE),
-            trajectory: Channel::new(topics.trajectory, &JOINT_TRAJECTORY),
-            interfaces: Channel::new(topics.interfaces, &DYNAMIC_JOINT_STATE),
-            description: Channel::latched(topics.description, &TEXT),
-            planned_description: Channel::latched(topics.planned_description, &TEXT),
-            transforms: Channel::new(topics.transforms, &TRANSFORMS),
-            fixed_transforms: Channel::latched(topics.fixed_transforms, &TRANSFORMS),
-            tracking_error: Channel::new(topics.tracking_error, &JOINT_STATE),
-        };
-        check_distinct("topic", channels.all().map(Channel::topic))?;
-        Ok(channels)
-    }
-
-    fn all(&self) -> [&Channel; 11] {
-        [
-            &self.planned, &self.measured, &self.command, &self.controller_state, &self.trajectory,
-            &self.interfaces, &self.description, &self.planned_description, &self.transforms,
-            &self.fixed_transforms, &self.tracking_error,
-        ]
-    }
+/// In the order of [`Kind`].
+fn channels(topics: Topics) -> [Channel; 11] {
+    [
+        Channel::new(topics.planned, &JOINT_STATE),
+        Channel::new(topics.measured, &JOINT_STATE),
+        Channel::new(topics.command, &JOINT_STATE),
+        Channel::new(topics.controller_state, &CONTROLLER_STATE),
+        Channel::new(topics.trajectory, &JOINT_TRAJECTORY),
+        Channel::new(topics.interfaces, &DYNAMIC_JOINT_STATE),
+        Channel::latched(topics.description, &TEXT),
+        Channel::latched(topics.planned_description, &TEXT),
+        Channel::new(topics.transforms, &TRANSFORMS),
+        Channel::latched(topics.fixed_transforms, &TRANSFORMS),
+        Channel::new(topics.tracking_error, &JOINT_STATE),
+    ]
 }
 
 fn check_joint_names(joint_names: &[String]) -> Result<(), WriteError> {

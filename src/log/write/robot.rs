@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use super::{
-    Cdr, LogWriter, Role, WriteError,
+    Kind, LogWriter, Role, WriteError,
     message::{check_length, encode_header, encode_joint_state},
     stamp::Stamp,
 };
@@ -33,12 +33,8 @@ impl<W: Write> LogWriter<W> {
         let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         self.cdr.begin();
         self.cdr.string(urdf);
-        let channel = match role {
-            Role::Planned => &mut self.channels.planned_description,
-            Role::Measured | Role::Command => &mut self.channels.description,
-        };
-        channel.send(&mut self.mcap, stamp, self.cdr.bytes())?;
-        self.flush_if_due(stamp)
+        let kind = if role == Role::Planned { Kind::PlannedDescription } else { Kind::Description };
+        self.send(kind, stamp)
     }
 
     /// Writes where frames are now: `tf2_msgs/msg/TFMessage`.
@@ -47,10 +43,7 @@ impl<W: Write> LogWriter<W> {
     ///
     /// [`WriteError::Text`], [`WriteError::TimeRange`] or [`WriteError::Output`].
     pub fn transforms(&mut self, stamp_ns: i64, transforms: &[Transform<'_>]) -> Result<(), WriteError> {
-        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
-        encode_transforms(&mut self.cdr, stamp, transforms)?;
-        self.channels.transforms.send(&mut self.mcap, stamp, self.cdr.bytes())?;
-        self.flush_if_due(stamp)
+        self.placed(Kind::Transforms, stamp_ns, transforms)
     }
 
     /// Writes where frames are for the whole run, all in one call: `tf2_msgs/msg/TFMessage`.
@@ -63,10 +56,7 @@ impl<W: Write> LogWriter<W> {
         stamp_ns: i64,
         transforms: &[Transform<'_>],
     ) -> Result<(), WriteError> {
-        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
-        encode_transforms(&mut self.cdr, stamp, transforms)?;
-        self.channels.fixed_transforms.send(&mut self.mcap, stamp, self.cdr.bytes())?;
-        self.flush_if_due(stamp)
+        self.placed(Kind::FixedTransforms, stamp_ns, transforms)
     }
 
     /// Writes plan minus measurement, one angle a joint: `sensor_msgs/msg/JointState`.
@@ -79,25 +69,25 @@ impl<W: Write> LogWriter<W> {
         let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
         encode_header(&mut self.cdr, stamp, &self.joint_names);
         encode_joint_state(&mut self.cdr, [error_rad, &[], &[]]);
-        self.channels.tracking_error.send(&mut self.mcap, stamp, self.cdr.bytes())?;
-        self.flush_if_due(stamp)
+        self.send(Kind::TrackingError, stamp)
     }
-}
 
-fn encode_transforms(cdr: &mut Cdr, stamp: Stamp, transforms: &[Transform<'_>]) -> Result<(), WriteError> {
-    cdr.begin();
-    cdr.count(transforms.len());
-    for transform in transforms {
-        check_text("frame", transform.parent)?;
-        check_text("frame", transform.child)?;
-        stamp.encode(cdr);
-        cdr.string(transform.parent);
-        cdr.string(transform.child);
-        for value in transform.translation_m.iter().chain(&transform.rotation_xyzw) {
-            cdr.f64(*value);
+    fn placed(&mut self, kind: Kind, stamp_ns: i64, transforms: &[Transform<'_>]) -> Result<(), WriteError> {
+        let stamp = Stamp::new(stamp_ns, self.log_delay_ns)?;
+        self.cdr.begin();
+        self.cdr.count(transforms.len());
+        for transform in transforms {
+            check_text("frame", transform.parent)?;
+            check_text("frame", transform.child)?;
+            stamp.encode(&mut self.cdr);
+            self.cdr.string(transform.parent);
+            self.cdr.string(transform.child);
+            for value in transform.translation_m.iter().chain(&transform.rotation_xyzw) {
+                self.cdr.f64(*value);
+            }
         }
+        self.send(kind, stamp)
     }
-    Ok(())
 }
 
 fn check_text(kind: &'static str, text: &str) -> Result<(), WriteError> {

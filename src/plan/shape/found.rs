@@ -6,6 +6,7 @@ use super::{
     descend::descend,
 };
 use crate::{
+    math::smooth_step,
     plan::{
         Choice, KEPT_SHARE, Limit, Margin, PlanEvaluation, Setup, Timing, Via, joint_limits::JointLimits,
     },
@@ -133,8 +134,7 @@ fn stopping((frame, mut curve): (Frame<'_>, Curve), pieces: usize) -> (Frame<'_>
     let keys = frame.key.clone();
     for ends in keys.windows(2) {
         for k in 1..pieces {
-            let x = k as f64 / pieces as f64;
-            let share = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x);
+            let share = smooth_step(k as f64 / pieces as f64);
             for joint in 0..joints {
                 let [from, to] = [ends[0], ends[1]].map(|point| curve.point_rad[point * joints + joint]);
                 curve.point_rad[(ends[0] + k) * joints + joint] = from + share * (to - from);

@@ -101,7 +101,6 @@ pub enum Sentence {
 
 impl Document {
     /// Its commands with the options by which the logs were read.
-    #[must_use]
     pub fn reading(mut self, options: &[String]) -> Self {
         self.sections = self.sections.into_iter().map(|section| section.reading(options)).collect();
         self
@@ -113,27 +112,23 @@ impl Document {
     }
 
     /// The same under a title.
-    #[must_use]
     pub fn titled_as(self, title: &str) -> Self {
         Self { title: Some(title.to_owned()), ..self }
     }
 
     /// With one section more at its end.
-    #[must_use]
     pub fn with(mut self, section: Section) -> Self {
         self.sections.push(section);
         self
     }
 
     /// With remarks at its end, if there are any.
-    #[must_use]
     pub fn remarked(mut self, remarks: &Remarks) -> Self {
         self.sections.extend(Section::remarks(remarks));
         self
     }
 
     /// With a section more, above the remarks.
-    #[must_use]
     pub fn with_above_remarks(mut self, section: Section) -> Self {
         let place = self.sections.iter().position(|other| other.id == Id::REMARKS);
         self.sections.insert(place.unwrap_or(self.sections.len()), section);
@@ -153,7 +148,6 @@ impl Document {
 
 impl Section {
     /// Its commands with the options by which the logs were read, each from [`argument`](super::argument).
-    #[must_use]
     pub fn reading(mut self, options: &[String]) -> Self {
         for block in &mut self.blocks {
             if let Block::Command(line) = block {
@@ -179,14 +173,12 @@ impl Section {
     }
 
     /// With one block more at its end.
-    #[must_use]
     pub fn with(mut self, block: impl Into<Block>) -> Self {
         self.blocks.push(block.into());
         self
     }
 
     /// With blocks more at its end.
-    #[must_use]
     pub fn with_all(mut self, blocks: impl IntoIterator<Item = impl Into<Block>>) -> Self {
         self.blocks.extend(blocks.into_iter().map(Into::into));
         self

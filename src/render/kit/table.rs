@@ -34,7 +34,6 @@ impl Column {
     }
 
     /// With what it holds.
-    #[must_use]
     pub fn meaning(self, meaning: &'static str) -> Self {
         Self { meaning, ..self }
     }

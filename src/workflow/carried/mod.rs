@@ -87,13 +87,11 @@ impl Carried {
     }
 
     /// With what is said of those joints that slide.
-    #[must_use]
     pub fn with_kinds_of<'a>(self, tracks: impl Iterator<Item = &'a Track>) -> Self {
         Self { kinds: joint_kinds(tracks.map(|track| (track.name(), track.kind()))), ..self }
     }
 
     /// The same of the joints of an arm.
-    #[must_use]
     pub fn with_kinds_of_arm(self, arm: &Chain) -> Self {
         Self { kinds: joint_kinds(arm.joints().iter().map(|joint| (&*joint.name, joint.kind))), ..self }
     }
@@ -105,7 +103,6 @@ impl Carried {
     }
 
     /// A task with its arm, and a plan of it.
-    #[must_use]
     pub fn with_plan(self, task: &TaskFiles, plan: &PlanDocument) -> Self {
         let mut files = attached(TASK, task);
         files.push(attachment(PLAN, "application/json", &plan.json()));
@@ -113,7 +110,6 @@ impl Carried {
     }
 
     /// A task of which only the arm counts.
-    #[must_use]
     pub fn with_arm_of(self, task: &TaskFiles) -> Self {
         Self { files: attached(ARM, task), ..self }
     }
@@ -125,27 +121,23 @@ impl Carried {
     }
 
     /// The provenance in place of what was there.
-    #[must_use]
     pub fn with_provenance(self, provenance: BTreeMap<String, String>) -> Self {
         Self { provenance, ..self }
     }
 
     /// When the times of the plan count from, s since the start of the log.
-    #[must_use]
     pub fn with_starts_s(mut self, starts_s: f64) -> Self {
         self.provenance.insert(STARTS.to_owned(), starts_s.to_string());
         self
     }
 
     /// Where the controller takes trajectories.
-    #[must_use]
     pub fn with_trajectory_topic(mut self, topic: &str) -> Self {
         self.provenance.insert(TRAJECTORY.to_owned(), topic.to_owned());
         self
     }
 
     /// What is expected of the run of this command.
-    #[must_use]
     pub fn with_promise(mut self, promise: &Promise) -> Self {
         self.provenance.extend(promise.entries());
         self
@@ -157,7 +149,6 @@ impl Carried {
     }
 
     /// Without a task of which only the arm counts.
-    #[must_use]
     pub fn of_plan(mut self) -> Self {
         if self.file(ARM).is_some() {
             self.files.retain(|file| ![ARM, URDF, HYDRAULICS].contains(&file.name.as_str()));

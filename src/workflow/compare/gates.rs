@@ -56,70 +56,48 @@ struct Worst {
     no_reduction: bool,
 }
 
+const fn gate(
+    key: &'static str,
+    name: &'static str,
+    form: Form,
+    find: fn(&Found<'_>) -> Option<Worst>,
+) -> Gate {
+    Gate { key, name, form, find }
+}
+
 /// One row a limit.
 static GATES: &[Gate] = &[
-    Gate {
-        key: "peak-reduction",
-        name: "reduction of the mean transition peak",
-        form: Form::Reduction,
-        find: |found| {
-            let reduction = |peak: &&Summary| match (peak.relative_change, peak.mean_difference) {
-                (Some(change), _) => Some(-change),
-                // Nothing to reduce.
-                (None, Some(difference)) if difference <= 0.0 => Some(0.0),
-                _ => None,
-            };
-            let all: Option<Vec<f64>> = found.peaks.iter().map(reduction).collect();
-            Some(Worst { value: all?.into_iter().reduce(f64::min)?, ..Worst::default() })
-        },
-    },
-    Gate {
-        key: "p",
-        name: "p of a reduction of transition peaks",
-        form: Form::Probability,
-        find: |found| {
-            let some = found.peaks.iter().all(|peak| peak.pairs > 0);
-            let value = found.peaks.iter().filter(|_| some).map(|peak| peak.p_value).reduce(f64::max)?;
-            let grows = |peak: &&Summary| peak.mean_difference.is_none_or(|difference| difference >= 0.0);
-            Some(Worst { value, no_reduction: found.peaks.iter().any(grows), ..Worst::default() })
-        },
-    },
-    Gate {
-        key: "transition-growth",
-        name: "growth of a transition's peak",
-        form: Form::Growth(JointKind::Turns),
-        find: |found| growth(found, JointKind::Turns),
-    },
-    Gate {
-        key: "transition-growth-sliding",
-        name: "growth of a transition's peak, joints that slide",
-        form: Form::Growth(JointKind::Slides),
-        find: |found| growth(found, JointKind::Slides),
-    },
-    Gate {
-        key: "rms-ratio",
-        name: "rms error after over before",
-        form: Form::Ratio,
-        find: |found| ratio(found, "rms"),
-    },
-    Gate {
-        key: "peak-ratio",
-        name: "peak error after over before",
-        form: Form::Ratio,
-        find: |found| ratio(found, "peak"),
-    },
-    Gate {
-        key: "tool-error",
-        name: "worst error of the tool after",
-        form: Form::Distance,
-        find: |found| after(found, "worst_m"),
-    },
-    Gate {
-        key: "end-error",
-        name: "error of the tool at rest at the end after",
-        form: Form::Distance,
-        find: |found| after(found, "end_m"),
-    },
+    gate("peak-reduction", "reduction of the mean transition peak", Form::Reduction, |found| {
+        let reduction = |peak: &&Summary| match (peak.relative_change, peak.mean_difference) {
+            (Some(change), _) => Some(-change),
+            // Nothing to reduce.
+            (None, Some(difference)) if difference <= 0.0 => Some(0.0),
+            _ => None,
+        };
+        let all: Option<Vec<f64>> = found.peaks.iter().map(reduction).collect();
+        Some(Worst { value: all?.into_iter().reduce(f64::min)?, ..Worst::default() })
+    }),
+    gate("p", "p of a reduction of transition peaks", Form::Probability, |found| {
+        let some = found.peaks.iter().all(|peak| peak.pairs > 0);
+        let value = found.peaks.iter().filter(|_| some).map(|peak| peak.p_value).reduce(f64::max)?;
+        let grows = |peak: &&Summary| peak.mean_difference.is_none_or(|difference| difference >= 0.0);
+        Some(Worst { value, no_reduction: found.peaks.iter().any(grows), ..Worst::default() })
+    }),
+    gate("transition-growth", "growth of a transition's peak", Form::Growth(JointKind::Turns), |found| {
+        growth(found, JointKind::Turns)
+    }),
+    gate(
+        "transition-growth-sliding",
+        "growth of a transition's peak, joints that slide",
+        Form::Growth(JointKind::Slides),
+        |found| growth(found, JointKind::Slides),
+    ),
+    gate("rms-ratio", "rms error after over before", Form::Ratio, |found| ratio(found, "rms")),
+    gate("peak-ratio", "peak error after over before", Form::Ratio, |found| ratio(found, "peak")),
+    gate("tool-error", "worst error of the tool after", Form::Distance, |found| after(found, "worst_m")),
+    gate("end-error", "error of the tool at rest at the end after", Form::Distance, |found| {
+        after(found, "end_m")
+    }),
 ];
 
 fn growth(found: &Found<'_>, kind: JointKind) -> Option<Worst> {
@@ -182,14 +160,12 @@ pub struct GateResult {
 
 impl Gates {
     /// With a limit more, by its key, in SI units; a key of no limit adds none.
-    #[must_use]
     pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
         self.gates.extend(Row::find(key).zip(value));
         self
     }
 
     /// Where nothing can be compared, limits are kept.
-    #[must_use]
     pub fn with_empty_kept(self, empty_is_kept: bool) -> Self {
         Self { empty_is_kept, ..self }
     }

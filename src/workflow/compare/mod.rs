@@ -67,20 +67,16 @@ pub struct Inputs {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum CompareFailure {
-    /// One of the runs cannot be analysed.
     #[error("{} cannot be compared", path.display())]
     Run { path: PathBuf, source: ReportFailure },
-    /// A side without a run.
     #[error("found no run {0} the change, expected at least one")]
     NoRun(Side),
-    /// A joint that turns here and slides there.
     #[error(
         "{joint} is logged in {} in {} and in {} in {}: angles and lengths are not compared; --hydraulics turns lengths of \
          cylinders into angles, --slides names joints that slide",
         kinds[0].unit(), logs[0].display(), kinds[1].unit(), logs[1].display()
     )]
     MixedKinds { joint: String, kinds: [JointKind; 2], logs: Box<[PathBuf; 2]> },
-    /// The runs are of different arms, or name their joints differently.
     #[error(
         "the runs have no joint in common: {before} before, {after} after; --joints names joints of topics that name none, and \
          `hydrotrace import` gives those of a table other names (--planned NAME=COLUMN, --measured NAME=COLUMN)"

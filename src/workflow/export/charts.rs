@@ -30,13 +30,10 @@ pub enum For {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ChartsFailure {
-    /// A log cannot be read or holds nothing that can be drawn.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// A file that the program does not open.
     #[error("{} is {what}, which {program} does not open; {fix}", path.display())]
     Unopened { path: PathBuf, what: &'static str, program: &'static str, fix: String },
-    /// Messages of types that are not known.
     #[error(
         "{} has its joints in messages of no form that is known, of which no line can be told to another program; {fix}",
         path.display()

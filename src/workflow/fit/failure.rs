@@ -12,13 +12,10 @@ use crate::fit::FitError;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum FitFailure {
-    /// A log.
     #[error(transparent)]
     Observe(#[from] ObserveFailure),
-    /// The data.
     #[error("the logs cannot be fitted")]
     Fit(#[from] FitError),
-    /// A file with limits cannot be read.
     #[error("cannot read {}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
     /// The document of a fit, for programs.
@@ -28,23 +25,18 @@ pub enum FitFailure {
         path.display()
     )]
     Document { path: PathBuf },
-    /// A file is no limits.
     #[error("{} does not hold limits; `hydrotrace fit LOG -o FILE` writes some", path.display())]
     Limits { path: PathBuf, source: Box<toml::de::Error> },
-    /// A file of another kind or of a later version.
     #[error("{} is of format {found:?}, expected {LIMITS_FORMAT:?}", path.display())]
     Format { path: PathBuf, found: String },
-    /// A file of another arm.
     #[error("the limits in {} are of the joints {found}, the log has {expected}: not one in common", path.display())]
     OtherJoints { path: PathBuf, found: String, expected: String },
-    /// A joint that turns in one and slides in the other.
     #[error(
         "{joint} turns in one of the log and {}, and slides in the other: fit a log of lengths for lengths, of angles for angles \
          (--slides, --hydraulics with --as)",
         path.display()
     )]
     OtherKind { path: PathBuf, joint: String },
-    /// Numbers in a file that no machine has.
     #[error("the limits in {} cannot be used", path.display())]
     Values { path: PathBuf, source: FitError },
 }

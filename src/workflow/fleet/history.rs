@@ -165,7 +165,8 @@ impl History {
         let index: BTreeMap<String, usize> =
             history.runs.iter().enumerate().map(|(k, run)| (run.id.clone(), k)).collect();
         if let Some(joint) = &filter.joint {
-            check_joint(joint, joints.values().flatten().map(String::as_str).collect())?;
+            let fault = |joint, nearest, present| FleetFailure::NoJoint { joint, nearest, present };
+            check_name(joint, &joints.values().flatten().map(String::as_str).collect(), fault)?;
         }
         let joint =
             |row: &Vec<Cell>| filter.joint.as_ref().is_none_or(|joint| row[2].as_text() == Some(joint));
@@ -213,13 +214,8 @@ impl History {
     }
 
     fn check(&self, machine: &str) -> Result<(), FleetFailure> {
-        let machines: BTreeSet<&str> = self.runs.iter().map(|run| run.machine.as_str()).collect();
-        if machines.contains(machine) {
-            return Ok(());
-        }
-        let nearest = nearest(machine, machines.iter().copied());
-        let present = machines.into_iter().collect::<Vec<_>>().join(", ");
-        Err(FleetFailure::NoMachine { machine: machine.to_owned(), nearest, present })
+        let fault = |machine, nearest, present| FleetFailure::NoMachine { machine, nearest, present };
+        check_name(machine, &self.machines(), fault)
     }
 
     fn take_starts(&mut self, rows: &[Vec<Cell>], index: &BTreeMap<String, usize>) {
@@ -343,13 +339,17 @@ impl History {
     }
 }
 
-fn check_joint(joint: &str, present: BTreeSet<&str>) -> Result<(), FleetFailure> {
-    if present.contains(joint) {
+/// That a name is one of those that are there; else what is wrong, by it, the nearest and all.
+fn check_name(
+    name: &str,
+    present: &BTreeSet<&str>,
+    fault: impl FnOnce(String, Option<String>, String) -> FleetFailure,
+) -> Result<(), FleetFailure> {
+    if present.contains(name) {
         return Ok(());
     }
-    let nearest = nearest(joint, present.iter().copied());
-    let present = present.into_iter().collect::<Vec<_>>().join(", ");
-    Err(FleetFailure::NoJoint { joint: joint.to_owned(), nearest, present })
+    let all = present.iter().copied().collect::<Vec<_>>().join(", ");
+    Err(fault(name.to_owned(), nearest(name, present.iter().copied()), all))
 }
 
 const RUN: [&str; 12] = [

@@ -1,10 +1,10 @@
 //! What each run tells of its machine: the numbers that a fit finds in it, as rows.
 
-use super::tables::{Log, Name, Rows, remark_row};
+use super::tables::{Log, Name, Rows, limit_row, remark_row};
 use crate::{
     document::explained,
-    fit::{Estimated, JointFit},
-    log::{Input, ReadOptions, dataset::Cell},
+    fit::JointFit,
+    log::{Input, ReadOptions},
     remark::{Code, Remark},
     threads,
     workflow::fit,
@@ -26,7 +26,9 @@ pub(super) fn rows(log: &Log, inputs: Vec<Input>, run_id: &str, read: &ReadOptio
         Ok(fitted) => {
             let followed =
                 |joint: &JointFit| joint.quantities().into_iter().filter(|(name, _)| FOLLOWED.contains(name));
-            let of = |joint| followed(joint).map(move |quantity| row(log, run_id, joint, quantity));
+            let of = |joint| {
+                followed(joint).map(move |(name, found)| limit_row(&(log, run_id, joint, name, found)))
+            };
             fitted.fit.joints.iter().flat_map(of).map(|row| (Name::Limits, row)).collect()
         }
         Err(error) => {
@@ -35,25 +37,6 @@ pub(super) fn rows(log: &Log, inputs: Vec<Input>, run_id: &str, read: &ReadOptio
             vec![(Name::Remarks, remark_row(log, run_id, &remark))]
         }
     }
-}
-
-fn row(log: &Log, run_id: &str, joint: &JointFit, (name, found): (&str, Estimated)) -> Vec<Cell> {
-    let [low, high] = found.interval.map_or([None; 2], |interval| interval.map(Some));
-    vec![
-        Cell::from(run_id),
-        Cell::from(log.machine.as_deref()),
-        Cell::from(joint.name.as_str()),
-        Cell::from(name),
-        Cell::from(found.value),
-        Cell::from(low),
-        Cell::from(high),
-        Cell::from(found.lower_bound),
-        Cell::from(found.upper_bound),
-        Cell::from(found.identified),
-        Cell::from(joint.model_holds),
-        Cell::from(joint.held_out_r2),
-        Cell::from(joint.samples),
-    ]
 }
 
 #[cfg(test)]

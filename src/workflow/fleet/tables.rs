@@ -3,6 +3,7 @@
 use super::dated::{began_ns, undated};
 use crate::{
     document::PROGRAM,
+    fit::{Estimated, JointFit},
     log::dataset::{Cell, Column},
     remark::{Code, Remark},
     replay::{JointReplay, Transition},
@@ -45,54 +46,84 @@ impl Name {
     pub fn columns(self) -> Vec<Column> {
         match self {
             Self::Interventions => INTERVENTIONS.to_vec(),
-            Self::Joints => JOINTS.iter().map(|(column, _)| *column).collect(),
-            Self::Limits => LIMITS.to_vec(),
-            Self::Remarks => REMARKS.to_vec(),
-            Self::Runs => RUNS.to_vec(),
-            Self::Transitions => TRANSITIONS.iter().map(|(column, _)| *column).collect(),
+            Self::Joints => columns(JOINTS),
+            Self::Limits => columns(LIMITS),
+            Self::Remarks => columns(REMARKS),
+            Self::Runs => columns(RUNS),
+            Self::Transitions => columns(TRANSITIONS),
         }
     }
+}
+
+fn columns<T>(table: &[(Column, T)]) -> Vec<Column> {
+    table.iter().map(|(column, _)| *column).collect()
 }
 
 /// A column, and what it says of something in a log.
 type Told<T> = (Column, for<'a> fn(&(&'a Log, &'a Findings, &'a T)) -> Cell);
 
-fn row<T>(table: &[Told<T>], log: &Log, found: &Findings, of: &T) -> Vec<Cell> {
-    table.iter().map(|(_, told)| told(&(log, found, of))).collect()
+type Says<T> = (Column, fn(&T) -> Cell);
+type SaysOfLimit = (Column, for<'a> fn(&OfLimit<'a>) -> Cell);
+type SaysOfRemark = (Column, for<'a> fn(&(&'a Log, &'a str, &'a Remark)) -> Cell);
+
+fn row<T>(table: &[Says<T>], of: &T) -> Vec<Cell> {
+    table.iter().map(|(_, told)| told(of)).collect()
 }
 
-const RUNS: &[Column] = &[
-    Column::text("run_id"),
-    Column::text("machine"),
-    Column::instant("started_at"),
-    Column::text("log_uri"),
-    Column::text("log_etag"),
-    Column::whole("log_bytes"),
-    Column::text("log_sha256"),
-    Column::text("analysis_id"),
-    Column::text("program"),
-    Column::text("plan_id"),
-    Column::real("duration_s"),
-    Column::text("planned_topic"),
-    Column::text("planned_field"),
-    Column::text("measured_topic"),
-    Column::text("measured_field"),
-    Column::text("time_base"),
-    Column::flag("plan_is_command"),
-    Column::whole("joints"),
-    Column::whole("samples"),
-    Column::whole("transitions"),
-    Column::text("unit"),
-    Column::real("rms"),
-    Column::real("peak"),
-    Column::real("path_rms"),
-    Column::real("lag_share"),
-    Column::text("verdict"),
-    Column::real("concentration_p"),
-    Column::whole("remarks"),
-    Column::text("error"),
-    Column::flag("may_pass"),
-    Column::whole("tries"),
+/// Of a run, and when it began, ns since 1970.
+const RUNS: &[Told<Option<i64>>] = &[
+    (Column::text("run_id"), |(_, found, _)| Cell::from(found.run_id.as_str())),
+    (Column::text("machine"), |(log, _, _)| Cell::from(log.machine.as_deref())),
+    (Column::instant("started_at"), |(_, _, began_ns)| began_ns.map_or(Cell::None, micros)),
+    (Column::text("log_uri"), |(log, _, _)| Cell::from(log.uri.as_str())),
+    (Column::text("log_etag"), |(log, _, _)| Cell::from(log.etag.as_str())),
+    (Column::whole("log_bytes"), |(log, _, _)| Cell::from(log.bytes)),
+    (Column::text("log_sha256"), |(_, found, _)| Cell::from(content(found).as_deref())),
+    (Column::text("analysis_id"), |(log, _, _)| Cell::from(log.analysis_id.as_str())),
+    (Column::text("program"), |_| Cell::from(PROGRAM)),
+    (Column::text("plan_id"), |(_, found, _)| Cell::from(found.plan_id.as_deref())),
+    (Column::real("duration_s"), |(_, found, _)| Cell::from(found.report.source.duration_s)),
+    (Column::text("planned_topic"), |(_, found, _)| Cell::from(found.report.source.planned_topic.as_str())),
+    (Column::text("planned_field"), |(_, found, _)| Cell::from(found.report.source.planned_field.as_str())),
+    (Column::text("measured_topic"), |(_, found, _)| Cell::from(found.report.source.measured_topic.as_str())),
+    (Column::text("measured_field"), |(_, found, _)| Cell::from(found.report.source.measured_field.as_str())),
+    (Column::text("time_base"), |(_, found, _)| Cell::from(found.report.source.time_base.name())),
+    (Column::flag("plan_is_command"), |(_, found, _)| {
+        Cell::from(found.report.remarks.iter().any(|remark| remark.code == Code::PlanIsCommand))
+    }),
+    (Column::whole("joints"), |(_, found, _)| Cell::from(found.report.joints.len())),
+    (Column::whole("samples"), |(_, found, _)| {
+        Cell::from(found.report.alignment.iter().map(|joint| joint.matched).max())
+    }),
+    (Column::whole("transitions"), |(_, found, _)| Cell::from(found.report.transitions.len())),
+    (Column::text("unit"), |(_, found, _)| Cell::from(unit(&found.report.joints))),
+    (Column::real("rms"), |(_, found, _)| {
+        Cell::from(found.report.whole_run.tracking_error.map(|error| error.rms))
+    }),
+    (Column::real("peak"), |(_, found, _)| {
+        Cell::from(found.report.whole_run.tracking_error.map(|error| error.peak))
+    }),
+    (Column::real("path_rms"), |(_, found, _)| {
+        Cell::from(found.report.whole_run.path_error.map(|error| error.rms))
+    }),
+    (Column::real("lag_share"), |(_, found, _)| {
+        Cell::from(found.report.whole_run.lag_share.map(|lag| lag.share))
+    }),
+    (Column::text("verdict"), |(_, found, _)| {
+        let concentration = found.report.whole_run.concentration.as_ref();
+        let verdict = concentration.and_then(|c| serde_json::to_string(&c.verdict).ok());
+        Cell::from(verdict.as_deref().map(|text| text.trim_matches('"')))
+    }),
+    (Column::real("concentration_p"), |(_, found, _)| {
+        let concentration = found.report.whole_run.concentration.as_ref();
+        Cell::from(concentration.and_then(|c| c.test).map(|test| test.p_value))
+    }),
+    (Column::whole("remarks"), |(_, found, began_ns)| {
+        Cell::from(found.report.remarks.len() + usize::from(began_ns.is_none()))
+    }),
+    (Column::text("error"), |_| Cell::None),
+    (Column::flag("may_pass"), |_| Cell::from(false)),
+    (Column::whole("tries"), |(log, _, _)| Cell::from(log.tries)),
 ];
 
 const JOINTS: &[Told<JointReplay>] = &[
@@ -158,32 +189,36 @@ const TRANSITIONS: &[Told<Transition>] = &[
     (Column::real("time_resolution_s"), |(_, _, start)| Cell::from(start.time_resolution_s)),
 ];
 
+/// A number of a joint by its name, in a run of a log.
+pub(super) type OfLimit<'a> = (&'a Log, &'a str, &'a JointFit, &'a str, Estimated);
+
 /// Numbers of a joint as a fit finds them; `value` is in the unit of the quantity's name.
-const LIMITS: &[Column] = &[
-    Column::text("run_id"),
-    Column::text("machine"),
-    Column::text("joint"),
-    Column::text("quantity"),
-    Column::real("value"),
-    Column::real("low"),
-    Column::real("high"),
-    Column::real("not_below"),
-    Column::real("not_above"),
-    Column::flag("identified"),
-    Column::flag("model_holds"),
-    Column::real("held_out_r2"),
-    Column::whole("samples"),
+const LIMITS: &[SaysOfLimit] = &[
+    (Column::text("run_id"), |(_, run_id, ..)| Cell::from(*run_id)),
+    (Column::text("machine"), |(log, ..)| Cell::from(log.machine.as_deref())),
+    (Column::text("joint"), |(_, _, joint, ..)| Cell::from(joint.name.as_str())),
+    (Column::text("quantity"), |(.., name, _)| Cell::from(*name)),
+    (Column::real("value"), |(.., found)| Cell::from(found.value)),
+    (Column::real("low"), |(.., found)| Cell::from(found.interval.map(|[low, _]| low))),
+    (Column::real("high"), |(.., found)| Cell::from(found.interval.map(|[_, high]| high))),
+    (Column::real("not_below"), |(.., found)| Cell::from(found.lower_bound)),
+    (Column::real("not_above"), |(.., found)| Cell::from(found.upper_bound)),
+    (Column::flag("identified"), |(.., found)| Cell::from(found.identified)),
+    (Column::flag("model_holds"), |(_, _, joint, ..)| Cell::from(joint.model_holds)),
+    (Column::real("held_out_r2"), |(_, _, joint, ..)| Cell::from(joint.held_out_r2)),
+    (Column::whole("samples"), |(_, _, joint, ..)| Cell::from(joint.samples)),
 ];
 
 const INTERVENTIONS: &[Column] =
     &[Column::text("machine"), Column::instant("at"), Column::text("joint"), Column::text("what")];
 
-const REMARKS: &[Column] = &[
-    Column::text("run_id"),
-    Column::text("machine"),
-    Column::text("code"),
-    Column::whole("count"),
-    Column::text("message"),
+/// A doubt about a run of a log.
+const REMARKS: &[SaysOfRemark] = &[
+    (Column::text("run_id"), |(_, run_id, _)| Cell::from(*run_id)),
+    (Column::text("machine"), |(log, _, _)| Cell::from(log.machine.as_deref())),
+    (Column::text("code"), |(_, _, remark)| Cell::from(remark.code.name().as_str())),
+    (Column::whole("count"), |(_, _, remark)| Cell::from(remark.count)),
+    (Column::text("message"), |(_, _, remark)| Cell::from(remark.message.as_str())),
 ];
 
 /// What is known of a log before it is opened.
@@ -213,51 +248,11 @@ fn micros(ns: i64) -> Cell {
 /// The rows of a log that was analysed.
 pub fn analysed(log: &Log, found: &Findings) -> Rows {
     let report = &found.report;
-    let whole = &report.whole_run;
-    let kinds = report.joints.windows(2).all(|two| two[0].kind == two[1].kind);
-    let unit = report.joints.first().filter(|_| kinds).map(|joint| joint.kind.unit());
-    let concentration = whole.concentration.as_ref();
-    let is_command = report.remarks.iter().any(|remark| remark.code == Code::PlanIsCommand);
-    let verdict = concentration.and_then(|c| serde_json::to_string(&c.verdict).ok());
     let began_ns = began_ns(&log.uri, report.source.began_ns());
-    let run = vec![
-        Cell::from(found.run_id.as_str()),
-        Cell::from(log.machine.as_deref()),
-        began_ns.map_or(Cell::None, micros),
-        Cell::from(log.uri.as_str()),
-        Cell::from(log.etag.as_str()),
-        Cell::from(log.bytes),
-        Cell::from(content(found).as_deref()),
-        Cell::from(log.analysis_id.as_str()),
-        Cell::from(PROGRAM),
-        Cell::from(found.plan_id.as_deref()),
-        Cell::from(report.source.duration_s),
-        Cell::from(report.source.planned_topic.as_str()),
-        Cell::from(report.source.planned_field.as_str()),
-        Cell::from(report.source.measured_topic.as_str()),
-        Cell::from(report.source.measured_field.as_str()),
-        Cell::from(report.source.time_base.name()),
-        Cell::from(is_command),
-        Cell::from(report.joints.len()),
-        Cell::from(report.alignment.iter().map(|joint| joint.matched).max()),
-        Cell::from(report.transitions.len()),
-        Cell::from(unit),
-        Cell::from(whole.tracking_error.map(|error| error.rms)),
-        Cell::from(whole.tracking_error.map(|error| error.peak)),
-        Cell::from(whole.path_error.map(|error| error.rms)),
-        Cell::from(whole.lag_share.map(|lag| lag.share)),
-        Cell::from(verdict.as_deref().map(|text| text.trim_matches('"'))),
-        Cell::from(concentration.and_then(|c| c.test).map(|test| test.p_value)),
-        Cell::from(report.remarks.len() + usize::from(began_ns.is_none())),
-        Cell::None,
-        Cell::from(false),
-        Cell::from(log.tries),
-    ];
-    let mut rows = vec![(Name::Runs, run)];
-    rows.extend(report.joints.iter().map(|joint| (Name::Joints, row(JOINTS, log, found, joint))));
-    rows.extend(
-        report.transitions.iter().map(|start| (Name::Transitions, row(TRANSITIONS, log, found, start))),
-    );
+    let mut rows = vec![(Name::Runs, row(RUNS, &(log, found, &began_ns)))];
+    rows.extend(report.joints.iter().map(|joint| (Name::Joints, row(JOINTS, &(log, found, joint)))));
+    let start = |start| (Name::Transitions, row(TRANSITIONS, &(log, found, start)));
+    rows.extend(report.transitions.iter().map(start));
     let doubt = |remark: &Remark| (Name::Remarks, remark_row(log, &found.run_id, remark));
     rows.extend(report.remarks.iter().map(doubt));
     rows.extend(began_ns.is_none().then(|| doubt(&undated())));
@@ -266,13 +261,18 @@ pub fn analysed(log: &Log, found: &Findings) -> Rows {
 
 /// The row of a doubt about a run.
 pub(super) fn remark_row(log: &Log, run_id: &str, remark: &Remark) -> Vec<Cell> {
-    vec![
-        Cell::from(run_id),
-        Cell::from(log.machine.as_deref()),
-        Cell::from(remark.code.name().as_str()),
-        Cell::from(remark.count),
-        Cell::from(remark.message.as_str()),
-    ]
+    row(REMARKS, &(log, run_id, remark))
+}
+
+/// The row of a number of a joint.
+pub(super) fn limit_row(of: &OfLimit<'_>) -> Vec<Cell> {
+    row(LIMITS, of)
+}
+
+/// The unit that all joints share.
+fn unit(joints: &[JointReplay]) -> Option<&'static str> {
+    let shared = joints.windows(2).all(|two| two[0].kind == two[1].kind);
+    joints.first().filter(|_| shared).map(|joint| joint.kind.unit())
 }
 
 /// The hash of the content of all files of a run.
@@ -286,7 +286,7 @@ pub fn failed(log: &Log, error: &str, may_pass: bool) -> Rows {
     let run_id = hash([log.uri.as_str(), log.etag.as_str()]);
     let mut row = vec![Cell::None; RUNS.len()];
     let mut put = |name: &str, cell: Cell| {
-        if let Some(place) = RUNS.iter().position(|column| column.name == name) {
+        if let Some(place) = RUNS.iter().position(|(column, _)| column.name == name) {
             row[place] = cell;
         }
     };

@@ -55,13 +55,10 @@ pub(super) fn other_share(plan: &Series, command: &Series, sent: &Series, at_s: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::smooth_step as step;
 
     #[test]
     fn another_share_of_a_correction_is_told_and_another_time_or_a_held_sample_is_not() {
-        let step = |t: f64| {
-            let x = t.clamp(0.0, 1.0);
-            x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
-        };
         let plan = |t: f64| step((t - 1.0) / 3.0) - 0.5 * step((t - 6.0) / 3.0);
         let bump =
             |t: f64| 0.02 * (-((t - 1.3) / 0.2).powi(2)).exp() - 0.015 * (-((t - 6.3) / 0.2).powi(2)).exp();

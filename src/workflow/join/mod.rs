@@ -63,10 +63,8 @@ impl Inputs {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum JoinFailure {
-    /// One of the logs.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// The output is in the folder that is read.
     #[error(
         "{} is in {}, which is read as one recording, and would be a part of it from then on; write it elsewhere",
         output.display(),
@@ -79,35 +77,30 @@ pub enum JoinFailure {
          sent, as below, or give the time of the plan's first sample with --at SECONDS"
     )]
     NothingSent(#[source] LogError),
-    /// The plan is of other joints, does not move, or is longer than the run.
     #[error(
         "the plan in {} is nowhere in what was sent on {topic}: no common joint, no motion, or a log that \
          holds less than four fifths of it; --planned names another topic, --at SECONDS the time",
         plan.display()
     )]
     Nowhere { plan: PathBuf, topic: String },
-    /// A joint that turns in one and slides in the other.
     #[error(
         "{joint} is a length in one of the log and {}, and an angle in the other: say --slides {joint} if it slides (in m; with =mm behind it \
          in mm), or, of joints with cylinders, give the plan in lengths, as `hydrotrace export PLAN --hydraulics FILE --as cylinders -o plan.csv` makes it",
         plan.display()
     )]
     OtherKind { plan: PathBuf, joint: String },
-    /// Something else was sent.
     #[error(
         "what was sent on {topic} is not what {} holds: where it fits best, at {at_s:.2} s, it leaves {:.0} % of \
          the motion (10 % at most); --planned names another topic, --at SECONDS the time",
         plan.display(), 100.0 * share
     )]
     SentOtherwise { plan: PathBuf, topic: String, at_s: f64, share: f64 },
-    /// Another command of the same plan was sent.
     #[error(
         "what was sent on {topic} is the plan of {} with {:.0} % of the correction of its command: another command of that plan was sent, \
          such as one of another --gain, and what it promised is another; give the log that was sent",
         plan.display(), 100.0 * share
     )]
     OtherShare { plan: PathBuf, topic: String, share: f64 },
-    /// Clocks too far apart.
     #[error(
         "what was sent on {topic} lasts {} than in {} by 3 % or more: no clocks are so far apart; was the plan run at another speed \
          (override), or are the times of the recording in another unit?",
@@ -115,16 +108,13 @@ pub enum JoinFailure {
         plan.display()
     )]
     OtherPace { plan: PathBuf, topic: String, longer: bool },
-    /// Lengths and angles under one name.
     #[error(
         "a log is joined as it was recorded, in lengths of cylinders, and the plan beside it would be in angles: leave out \
          --hydraulics and give a plan in lengths; `hydrotrace export PLAN --hydraulics FILE --as cylinders` makes one"
     )]
     Cylinders,
-    /// A plan that no run is.
     #[error("the plan in {} lasts {duration_s:.0} s, {LONGEST_S} s are the most", plan.display())]
     TooLong { plan: PathBuf, duration_s: f64 },
-    /// A time outside the run.
     #[error("--at {at_s} puts the plan at {at_s:.2} to {:.2} s, outside the measurement, {:.2} to {:.2} s",
         at_s + duration_s, measured_s[0], measured_s[1])]
     Outside { at_s: f64, duration_s: f64, measured_s: [f64; 2] },

@@ -65,8 +65,7 @@ impl Plan {
         let nowhere = || JoinFailure::Nowhere { plan: path.to_owned(), topic: topic.to_owned() };
         let (commanded, found) = best.ok_or_else(nowhere)?;
         if share(&found) > FITS {
-            let (plan, topic, at_s) = (path.to_owned(), topic.to_owned(), found.at_s + self.span_s()[0]);
-            return Err(JoinFailure::SentOtherwise { plan, topic, at_s, share: share(&found) });
+            return Err(self.sent_otherwise(&found, path, topic));
         }
         if found.is_apart_by_most() {
             let longer = found.pace.is_some_and(|pace| pace > 1.0);
@@ -92,13 +91,12 @@ impl Plan {
         if share(&found) <= FITS {
             return self.check_share(sent, found.at_s, path, topic);
         }
-        let at_s = found.at_s + self.span_s()[0];
-        Err(JoinFailure::SentOtherwise {
-            plan: path.to_owned(),
-            topic: topic.to_owned(),
-            at_s,
-            share: share(&found),
-        })
+        Err(self.sent_otherwise(&found, path, topic))
+    }
+
+    fn sent_otherwise(&self, found: &Located, path: &Path, topic: &str) -> JoinFailure {
+        let (plan, topic, at_s) = (path.to_owned(), topic.to_owned(), found.at_s + self.span_s()[0]);
+        JoinFailure::SentOtherwise { plan, topic, at_s, share: share(found) }
     }
 
     /// Whether the command was sent, at a time that the caller gives for the plan's own 0; with what is to be doubted about that.

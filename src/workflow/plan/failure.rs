@@ -15,31 +15,24 @@ use crate::{
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum PlanFailure {
-    /// A file cannot be read.
     #[error("cannot read {}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
-    /// A log's task names a file that the log does not hold.
     #[error(
         "the log's task names its arm's file {file:?}, which the log does not hold, and what a log names is not read \
          from elsewhere; plan again, or name the task file with --task where the verb has it"
     )]
     NotCarried { file: String },
-    /// The file is no task.
     #[error("{} is no task", path.display())]
     Task { path: PathBuf, source: TaskError },
-    /// The task does not fit its arm.
     #[error("{} cannot be planned", path.display())]
     Setup { path: PathBuf, source: Box<PlanError> },
-    /// The arm's files.
     #[error("the arm cannot be read")]
     Arm(#[from] ArmError),
-    /// Times or settings.
     #[error(transparent)]
     Plan(Box<PlanError>),
     /// No timing keeps all limits; what the nearest one breaks.
     #[error("no plan keeps all limits")]
     Infeasible(Box<PlanEvaluation>),
-    /// No plan keeps to the ceilings of the task.
     #[error("no plan keeps to the ceilings of the task")]
     Ceilings { nearest: Box<PlanEvaluation> },
 }

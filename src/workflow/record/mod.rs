@@ -89,28 +89,22 @@ pub struct Progress {
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum RecordError {
-    /// The lines are not understood.
     #[error(transparent)]
     Csv(#[from] CsvError),
     /// They are of a whole table.
     #[error("{0}; `hydrotrace import` of a file with these lines reads them")]
     ImportReads(CsvError),
-    /// The log cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
     /// The log cannot be written any more.
     #[error("cannot go on writing {}, after {rows} rows", path.display())]
     Stopped { path: PathBuf, rows: u64, source: WriteError },
-    /// There is a file already.
     #[error("{} is there already; a recording replaces it with --force only", path.display())]
     Exists { path: PathBuf },
-    /// The file cannot be made.
     #[error("cannot create {}", path.display())]
     Create { path: PathBuf, source: std::io::Error },
-    /// Nothing came.
     #[error("no line came: send a header and rows (CSV), or an object a line (JSON)")]
     Nothing,
-    /// Only words came.
     #[error("no line with numbers came, only {lines} of words: send the time and a position of each joint")]
     NoNumbers { lines: u64 },
 }

@@ -17,46 +17,33 @@ use crate::{
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ReplanFailure {
-    /// No run.
     #[error("found no log, expected at least one run to learn from")]
     NoLog,
-    /// Neither plan nor command may change.
     #[error("--keep-plan and --no-precompensation leave nothing to change; drop one of them")]
     NothingToChange,
-    /// A growth that is none.
     #[error("{key} is {found}; a share from 0 to {most} is expected")]
     Growth { key: &'static str, found: f64, most: f64 },
-    /// The runs, or the file with limits.
     #[error(transparent)]
     Fit(#[from] FitFailure),
-    /// A prediction.
     #[error("the machine cannot be predicted")]
     Predict(#[from] FitError),
-    /// The task.
     #[error(transparent)]
     Task(#[from] PlanFailure),
-    /// The task under fitted limits.
     #[error("the task cannot be planned under the limits of the machine")]
     Plan(#[from] PlanError),
-    /// Samples that are no track.
     #[error("the plan in the log cannot be sampled")]
     Track(#[from] SignalError),
-    /// The plan never moves.
     #[error("the plan in {} never moves; give the log of a run in which it does", path.display())]
     AtRest { path: PathBuf },
-    /// Plan or command begin or end in motion, or are silent in it.
     #[error("the {what} in {} {}", path.display(), Said(broken))]
     Broken { path: PathBuf, what: &'static str, broken: Broken },
-    /// No task to plan.
     #[error(
         "{} holds no task, and only the plan may change; name the task with --task, or leave out --no-precompensation",
         path.display()
     )]
     NoTask { path: PathBuf },
-    /// A bound that no joint of the plan is held by.
     #[error(transparent)]
     IdleBound(#[from] IdleBound),
-    /// A task that begins elsewhere.
     #[error(
         "the plan in {} begins {} beside the first key point of the task ({joint}): the arm would jump there; give the task of \
          this plan, or leave out --task",
@@ -70,18 +57,15 @@ pub enum ReplanFailure {
         /// By how much, rad.
         far: f64,
     },
-    /// A task of another arm.
     #[error(
         "the task is for the joints {task}, the plan in {} for {log}: give the task of this arm, or leave out --task",
         path.display()
     )]
     OtherArm { path: PathBuf, task: String, log: String },
-    /// No joint predicted well enough for a command.
     #[error(
         "no joint is predicted well enough for a command: the best held-out R2 is {best:.2}, {least} is needed; {why}"
     )]
     Unpredictable { best: f64, least: f64, why: Unclear },
-    /// A run that is none of its plan.
     #[error("{}: {why}. No command is made from such a run; leave it out if there are others", path.display())]
     Spoilt { path: PathBuf, why: String },
     /// A plan that ends in the middle of the motion that another log has.
@@ -107,21 +91,18 @@ pub enum ReplanFailure {
         path.display()
     )]
     Steps { path: PathBuf, joint: String, size: String, at_s: f64 },
-    /// A joint that turns on at the end of its scale.
     #[error(
         "{}: the plan of {joint} goes from one end of its turn to the other at {at_s:.2} s: a joint that turns on, whose angles wrap; \
          say so with --continuous {joint}",
         path.display()
     )]
     Wraps { path: PathBuf, joint: String, at_s: f64 },
-    /// The run does no task.
     #[error(
         "{}: its plan is an identification run, which shows limits by strokes that the machine cannot follow, and no command \
          corrects that; `hydrotrace fit` learns from it, give this command the log of a task",
         path.display()
     )]
     Identifies { path: PathBuf },
-    /// What was measured has little to do with the plan.
     #[error(
         "{}: half of the joints or more do not follow their plan, the error of each is more than half of its motion, so \
          no command is made; `hydrotrace report` of the log says where sign, zero, unit or name look wrong",

@@ -228,6 +228,7 @@ impl<'a> Course<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::smooth_step as step;
 
     fn held(plan: &Series, sent: &Series) -> Option<(Code, String)> {
         Course::of(plan, sent)?.held()
@@ -238,10 +239,6 @@ mod tests {
     }
 
     fn series(at_s: impl Fn(f64) -> f64) -> Series {
-        let step = |t: f64| {
-            let x = t.clamp(0.0, 1.0);
-            x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
-        };
         let plan = |size: f64, t: f64| size * (step((t - 2.0) / 4.0) - 0.6 * step((t - 9.0) / 5.0));
         let track = |name: &str, size: f64| Track::sampled(name, 1800, |t| plan(size, at_s(t)));
         Series { tracks: vec![track("swing", 1.0), track("boom", -0.5)] }
@@ -284,10 +281,7 @@ mod tests {
         }
         // One smooth motion, behind a filter, or made for one.
         let t_s: Vec<f64> = (0..900).map(|k| f64::from(k) * 0.01).collect();
-        let one = |t: f64| {
-            let x = ((t - 2.0) / 4.0).clamp(0.0, 1.0);
-            x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
-        };
+        let one = |t: f64| step((t - 2.0) / 4.0);
         let speed = |t: f64| 100.0 * (one(t + 0.005) - one(t - 0.005));
         let of = |q: &dyn Fn(f64) -> f64| {
             let q = t_s.iter().map(|t| q(*t)).collect();

@@ -77,14 +77,10 @@ fn goes_along(plan: &Series, other: &Series) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::Track;
+    use crate::{math::smooth_step as step, series::Track};
 
     #[test]
     fn a_plan_that_was_slowed_or_paused_goes_the_same_way_and_another_does_not() {
-        let step = |t: f64| {
-            let x = t.clamp(0.0, 1.0);
-            x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
-        };
         let plan = |at_s: &dyn Fn(f64) -> f64, boom: f64| {
             let track = |name: &str, of: &dyn Fn(f64) -> f64| Track::sampled(name, 5000, |t| of(at_s(t)));
             let swing = track("swing", &|t| step((t - 4.0) / 8.0) - 0.6 * step((t - 20.0) / 6.0));

@@ -60,14 +60,12 @@ type Found<'a> = (Option<f64>, &'a str, Option<f64>);
 
 impl Gates {
     /// With a limit more, in SI units; a limit on positions judges the joints of one kind.
-    #[must_use]
     pub fn with(mut self, limit: &'static Limit, kind: JointKind, value: f64) -> Self {
         self.gates.push(Gate { limit: Row(limit), kind, value });
         self
     }
 
     /// Where there is nothing to judge, limits are kept: a run without a start keeps those on starts.
-    #[must_use]
     pub fn with_empty_kept(self, empty_is_kept: bool) -> Self {
         Self { empty_is_kept, ..self }
     }

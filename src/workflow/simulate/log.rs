@@ -30,32 +30,24 @@ use crate::{
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum SimulateFailure {
-    /// The plan's log.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// The task within the log.
     #[error("{} holds a broken task", path.display())]
     Task { path: PathBuf, source: TaskError },
-    /// The task's arm.
     #[error(transparent)]
     Arm(#[from] PlanFailure),
-    /// The task on its arm.
     #[error("the task in the log does not fit its plan")]
     Setup(#[from] PlanError),
-    /// No arm but the sample's, which has other joints.
     #[error(
         "{} holds no task and so no arm; its joints are {found}, those of the sample arm {sample}. Give a log of \
          `plan`, `replan --task` or `excite --task`",
         path.display()
     )]
     NoArm { path: PathBuf, found: String, sample: String },
-    /// The machine.
     #[error(transparent)]
     Plant(#[from] PlantError),
-    /// The run's log.
     #[error("the run cannot be logged")]
     Write(#[from] WriteError),
-    /// Angles in the log that are no track.
     #[error("the plan in the log cannot be run")]
     Track(#[from] SignalError),
 }

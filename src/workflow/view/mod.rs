@@ -46,13 +46,10 @@ pub struct Inputs {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum ViewFailure {
-    /// A log cannot be read or holds no planned joints.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// A description cannot be read.
     #[error("cannot read {}", path.display())]
     Read { path: PathBuf, source: std::io::Error },
-    /// A description is of no arm of these joints.
     #[error("the joints {} of the log turn no arm of the description", joints.join(", "))]
     Arm { joints: Vec<String>, source: ArmError },
 }

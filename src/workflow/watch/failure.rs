@@ -11,23 +11,18 @@ use crate::{atomic_file::AtomicError, workflow::fleet::FleetFailure};
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the message says what each field is")]
 pub enum WatchFailure {
-    /// The reports would lie among the logs.
     #[error(
         "{} holds the logs that are watched, and the reports would lie among them; give --into a folder of its own, inside it or \
          elsewhere",
         path.display()
     )]
     Itself { path: PathBuf },
-    /// The dataset, or a source that leads nowhere.
     #[error(transparent)]
     Fleet(#[from] FleetFailure),
-    /// A page or the index.
     #[error(transparent)]
     Atomic(#[from] AtomicError),
-    /// The file system said no.
     #[error("cannot {action} {}", path.display())]
     File { action: &'static str, path: PathBuf, source: std::io::Error },
-    /// Another process writes the pages.
     #[error("another `hydrotrace watch` is writing to {}; give this one another folder with --into", path.display())]
     Locked { path: PathBuf },
 }

@@ -1,6 +1,8 @@
 //! A log without a verb.
 
-use crate::support::{json, pasted, root, run_args, run_at_root, run_line, said, sample, scratch, stdout};
+use crate::support::{
+    fleet::smooth, json, pasted, root, run_args, run_at_root, run_line, said, sample, scratch, stdout, timed,
+};
 
 #[test]
 fn a_log_without_a_verb_is_answered_in_ten_lines_whose_last_runs() {
@@ -44,16 +46,10 @@ fn a_pasted_line_reads_the_log_as_the_one_before_it_did() {
 #[test]
 fn a_log_of_the_tool_alone_suggests_what_can_be_done_with_it() {
     let folder = scratch();
-    let path_mm = |t_s: f64| {
-        let t = ((t_s - 2.0) / 4.0).clamp(0.0, 1.0);
-        500.0 * t * t * t * (10.0 + t * (6.0 * t - 15.0))
-    };
-    let mut table =
-        "time_s,planned_x_mm,planned_y_mm,planned_z_mm,measured_x_mm,measured_y_mm,measured_z_mm\n"
-            .to_owned();
-    for t_s in (0..500).map(|k| 0.02 * f64::from(k)) {
-        table += &format!("{t_s:.2},{:.4},0,800,{:.4},3,800\n", path_mm(t_s), path_mm(t_s - 0.2));
-    }
+    let path_mm = |t_s: f64| 500.0 * smooth((t_s - 2.0) / 4.0);
+    let head = "time_s,planned_x_mm,planned_y_mm,planned_z_mm,measured_x_mm,measured_y_mm,measured_z_mm";
+    let row = |t_s| format!("{t_s:.2},{:.4},0,800,{:.4},3,800", path_mm(t_s), path_mm(t_s - 0.2));
+    let table = timed(head, (500, 0.02), row);
     std::fs::write(folder.path().join("tool.csv"), table).unwrap();
     let (code, text, error) = said(&run_line(folder.path(), "tool.csv"));
     assert!(code == 0 || code == 3, "{code} {error}");
@@ -98,12 +94,11 @@ fn how_the_numbers_are_made_is_said_on_request() {
 #[test]
 fn a_joint_that_alone_moves_or_alone_rests_is_named() {
     let folder = scratch();
-    let mut table =
-        "time_s,boom_set_deg,boom_act_deg,arm_set_deg,arm_act_deg,slew_set_deg,slew_act_deg\n".to_owned();
-    for t_s in (0..600).map(|k| 0.02 * f64::from(k)) {
+    let head = "time_s,boom_set_deg,boom_act_deg,arm_set_deg,arm_act_deg,slew_set_deg,slew_act_deg";
+    let table = timed(head, (600, 0.02), |t_s| {
         let [on, late] = [2.0, 2.2].map(|from_s: f64| 5.0 * (t_s - from_s).clamp(0.0, 3.0));
-        table += &format!("{t_s:.2},{on:.4},{late:.4},{on:.4},1,7,{late:.4}\n");
-    }
+        format!("{t_s:.2},{on:.4},{late:.4},{on:.4},1,7,{late:.4}")
+    });
     std::fs::write(folder.path().join("run.csv"), table).unwrap();
     let (code, text, error) = said(&run_line(folder.path(), "run.csv"));
     assert!(code == 0 || code == 3, "{code} {error}");
@@ -119,10 +114,7 @@ fn a_joint_that_alone_moves_or_alone_rests_is_named() {
 /// Five moves there and back, 12 deg each; the second signal comes so much later, s.
 fn moves(later_s: f64, until_s: f64, names: [&str; 2]) -> String {
     let at = |t_s: f64| {
-        let one = |k: u32| {
-            let s = ((t_s - 2.0 - 6.0 * f64::from(k)) / 3.0).clamp(0.0, 1.0);
-            (if k.is_multiple_of(2) { 12.0 } else { -12.0 }) * s * s * s * (10.0 + s * (6.0 * s - 15.0))
-        };
+        let one = |k: u32| [12.0, -12.0][k as usize % 2] * smooth((t_s - 2.0 - 6.0 * f64::from(k)) / 3.0);
         (0..5).map(one).sum::<f64>()
     };
     let mut table = format!("time_s,{},{},wrist_set_deg,wrist_act_deg\n", names[0], names[1]);

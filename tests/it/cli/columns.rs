@@ -1,11 +1,11 @@
 //! Tables as people write them: lengths, sums, maps, and tables given as they are.
 
-use std::{fmt::Write as _, fs};
+use std::fs;
 
 use serde_json::Value;
 
 use super::csv::{import, moves, report, sample, trace};
-use crate::support::{run_args as hydrotrace, said};
+use crate::support::{run_args as hydrotrace, said, timed};
 
 #[test]
 fn a_header_says_lengths_plans_and_measurements_in_many_ways() {
@@ -51,12 +51,10 @@ fn a_header_says_lengths_plans_and_measurements_in_many_ways() {
 
 #[test]
 fn a_plan_may_be_a_sum_and_a_map_keeps_how_a_file_was_read() {
-    let mut text = "t_s,boom_measured_rad,boom_error,raw\n".to_owned();
-    for k in 0..500 {
-        let t_s = f64::from(k) * 0.02;
+    let text = timed("t_s,boom_measured_rad,boom_error,raw", (500, 0.02), |t_s| {
         let [planned, measured] = moves(t_s);
-        writeln!(text, "{t_s},{measured},{},{}", planned - measured, 1000.0 * planned + 12.0).unwrap();
-    }
+        format!("{t_s},{measured},{},{}", planned - measured, 1000.0 * planned + 12.0)
+    });
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a.csv"), &text).unwrap();
     let peak = || report(folder.path(), "a.mcap")["joints"][0]["tracking_error"]["peak"].as_f64().unwrap();
@@ -87,13 +85,11 @@ fn a_plan_may_be_a_sum_and_a_map_keeps_how_a_file_was_read() {
 fn a_signal_to_a_valve_that_is_called_a_command_is_no_position() {
     // What is sent opens the valve about its middle of 7.5, and the joint moves at 4 deg/s for each of it, 0.2 s late.
     let duty = |t_s: f64| 7.5 + (0.9 * t_s).sin() - 1.4 * (0.31 * t_s).cos() * (0.05 * t_s).sin();
-    let mut text = "Time,Boom Ms,Boom Cmd,Boom Error\n".to_owned();
     let mut boom_deg = 20.0;
-    for k in 0..1200 {
-        let t_s = f64::from(k) * 0.05;
+    let text = timed("Time,Boom Ms,Boom Cmd,Boom Error", (1200, 0.05), |t_s| {
         boom_deg += 0.05 * 4.0 * (duty(t_s - 0.2) - 7.5);
-        writeln!(text, "{t_s},{boom_deg},{},{}", duty(t_s), 0.2 * (t_s).sin()).unwrap();
-    }
+        format!("{t_s},{boom_deg},{},{}", duty(t_s), 0.2 * (t_s).sin())
+    });
     let (code, out, error) = import(&text, &["--degrees"]);
     assert!(code == 3 && out.contains("valve_command      Boom"), "{out}{error}");
     assert!(out.contains("taken as signals to the valves") && !out.contains("plan-is-command"), "{out}");
@@ -148,11 +144,9 @@ fn a_table_is_reported_as_it_is() {
 
 /// Rows at 50 Hz of a time, an angle in degrees and a length in mm that are late by a time, s.
 fn late(header: &str, late_s: f64) -> String {
-    (0..600).fold(format!("{header}\n"), |mut text, k| {
-        let t_s = f64::from(k) * 0.02;
+    timed(header, (600, 0.02), |t_s| {
         let moved = 1.0 - ((t_s - late_s - 2.0).clamp(0.0, 4.0) / 4.0 * std::f64::consts::PI).cos();
-        let _ = writeln!(text, "{t_s:.2},{:.4},{:.4}", 10.0 * moved, 200.0 * moved);
-        text
+        format!("{t_s:.2},{:.4},{:.4}", 10.0 * moved, 200.0 * moved)
     })
 }
 
@@ -188,11 +182,11 @@ fn a_table_that_says_neither_side_is_the_plan_where_a_plan_is_asked_for_or_it_is
 /// What was sent stands in for the plan of each joint that has none, whatever others have.
 #[test]
 fn a_joint_that_has_a_command_alone_is_reported_beside_one_that_has_a_plan() {
-    let rows = |row: &dyn Fn(f64, [f64; 2]) -> String| -> String {
-        (0..500).map(|k| 0.02 * f64::from(k)).map(|t_s| row(t_s, moves(t_s))).collect()
-    };
-    let table = rows(&|t, [p, m]| format!("{t},{p},{m},{p},{m}\n"));
-    let text = format!("t_s,boom_cmd_rad,boom_pos_rad,swing_setpoint_rad,swing_actual_rad\n{table}");
+    let head = "t_s,boom_cmd_rad,boom_pos_rad,swing_setpoint_rad,swing_actual_rad";
+    let text = timed(head, (500, 0.02), |t_s| {
+        let [p, m] = moves(t_s);
+        format!("{t_s},{p},{m},{p},{m}")
+    });
     let (code, out, error) = import(&text, &[]);
     assert!(code == 3 && error.is_empty(), "{code}: {error}");
     assert_eq!(became(&out, "boom_cmd_rad"), "planned position", "{out}");
@@ -218,15 +212,10 @@ fn became(out: &str, column: &str) -> String {
 
 #[test]
 fn a_list_in_a_cell_is_a_joint_for_each_number() {
-    let row = |k: i32| {
-        let t_s = 0.02 * f64::from(k);
+    let text = timed("Time,joint_names,desired.positions,actual.positions", (500, 0.02), |t_s| {
         let [p, m] = moves(t_s);
-        format!("{t_s},\"['elbow', 'wrist']\",\"({p}, 0.5)\",\"({m}, 0.5)\"\n")
-    };
-    let text = format!(
-        "Time,joint_names,desired.positions,actual.positions\n{}",
-        (0..500).map(row).collect::<String>()
-    );
+        format!("{t_s},\"['elbow', 'wrist']\",\"({p}, 0.5)\",\"({m}, 0.5)\"")
+    });
     let (code, out, error) = import(&text, &["--radians"]);
     assert!(code == 0 && error.is_empty(), "{code}: {out}{error}");
     assert_eq!(became(&out, "elbow.desired.positions"), "planned position", "{out}");

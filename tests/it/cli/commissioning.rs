@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use crate::support::{clean, json, run_line, said, sample, scratch};
+use crate::support::{clean, fleet::smooth, json, run_line, said, sample, scratch};
 
 /// A joint that follows a plan by its distance times a gain, and no faster than `most_deg_s`.
 pub(super) fn followed(plan: impl Iterator<Item = (f64, f64)>, gain_1_s: f64, most_deg_s: f64) -> String {
@@ -18,10 +18,6 @@ pub(super) fn followed(plan: impl Iterator<Item = (f64, f64)>, gain_1_s: f64, mo
 
 /// Six moves between 30 and 50 deg of so many seconds each, by time.
 pub(super) fn moves(takes_s: f64) -> impl Iterator<Item = (f64, f64)> {
-    let smooth = |s: f64| {
-        let s = s.clamp(0.0, 1.0);
-        s * s * s * (10.0 + s * (6.0 * s - 15.0))
-    };
     (0..7500).map(move |k| {
         let t_s = 0.01 * f64::from(k);
         let moves = (0..6).map(|k| [20.0, -20.0][k % 2] * smooth((t_s - 2.0 - 11.0 * k as f64) / takes_s));

@@ -5,7 +5,7 @@ use std::{path::Path, sync::LazyLock};
 
 use serde_json::Value;
 
-use crate::support::{hold_to_schema, run_args as hydrotrace, samples, stderr, stdout};
+use crate::support::{hold_to_schema, run_args as hydrotrace, samples, stderr, stdout, timed};
 
 const SOUND: &str = "panel-install.mcap";
 
@@ -257,14 +257,12 @@ fn json_is_as_the_schema_says_and_equal_calls_give_equal_bytes() {
 fn a_joint_that_a_mean_hides_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let run = |boom_late_s: f64, stick_late_s: f64| {
-        let header = "t_s,boom_set_deg,boom_act_deg,stick_set_deg,stick_act_deg\n".to_owned();
-        (0..600).fold(header, |text, k| {
-            let t_s = f64::from(k) * 0.02;
+        timed("t_s,boom_set_deg,boom_act_deg,stick_set_deg,stick_act_deg", (600, 0.02), |t_s| {
             let at = |late_s: f64| {
                 10.0 - 10.0 * ((t_s - late_s - 2.0).clamp(0.0, 4.0) / 4.0 * std::f64::consts::PI).cos()
             };
             let (plan, boom, stick) = (at(0.0), at(boom_late_s), at(stick_late_s));
-            text + &format!("{t_s:.2},{plan:.4},{boom:.4},{plan:.4},{stick:.4}\n")
+            format!("{t_s:.2},{plan:.4},{boom:.4},{plan:.4},{stick:.4}")
         })
     };
     let at = folder.path();

@@ -4,7 +4,7 @@ use std::{fmt::Write as _, fs, path::Path};
 
 use serde_json::Value;
 
-use crate::support::{run_line, stdout};
+use crate::support::{fleet::smooth, run_line, stdout};
 
 const JOINTS: [&str; 3] = ["boom", "stick", "swing"];
 
@@ -12,9 +12,8 @@ const JOINTS: [&str; 3] = ["boom", "stick", "swing"];
 fn run(folder: &Path, name: &str, behind_s: [f64; 3], hz: f64, until_s: f64) {
     let planned = |joint: usize, t_s: f64| {
         let moves = (0..4).map(|k| {
-            let s = ((t_s - 2.0 - 12.0 * f64::from(k) - 4.0 * joint as f64) / 3.0).clamp(0.0, 1.0);
             let direction = if k % 2 == 0 { 12.0 } else { -12.0 };
-            direction * s * s * s * (10.0 + s * (6.0 * s - 15.0))
+            direction * smooth((t_s - 2.0 - 12.0 * f64::from(k) - 4.0 * joint as f64) / 3.0)
         });
         moves.sum::<f64>()
     };

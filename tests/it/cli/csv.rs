@@ -1,12 +1,12 @@
 //! CSV files into logs and logs into tables, at the built binary and in the library.
 
-use std::{fmt::Write as _, fs, path::Path};
+use std::{fs, path::Path};
 
 use hydrotrace::log::{CsvOptions, read_csv_bytes};
 use proptest::prelude::*;
 use serde_json::Value;
 
-use crate::support::{run_args as hydrotrace, said};
+use crate::support::{run_args as hydrotrace, said, timed};
 
 const SAMPLES: [&str; 5] = ["panel-install", "still-joint", "gaps", "power-loss", "trajectory-only"];
 
@@ -33,13 +33,10 @@ pub(super) fn moves(t_s: f64) -> [f64; 2] {
 
 /// Rows of that joint below a header, with a time in the given unit.
 pub(super) fn trace(header: &str, per_second: f64, separator: &str, scale: f64) -> String {
-    let mut text = format!("{header}\n");
-    for k in 0..500 {
-        let t_s = f64::from(k) * 0.02;
+    timed(header, (500, 0.02), |t_s| {
         let [planned, measured] = moves(t_s).map(|q| q * scale);
-        writeln!(text, "{}{separator}{planned}{separator}{measured}", t_s * per_second).unwrap();
-    }
-    text
+        format!("{}{separator}{planned}{separator}{measured}", t_s * per_second)
+    })
 }
 
 #[test]

@@ -7,21 +7,18 @@ use serde_json::Value;
 use crate::support::{
     clean,
     fleet::{cells, files, small_log},
-    hold_to_schema, json, run_line, said,
+    hold_to_schema, json, run_line, said, timed,
 };
 
 /// Of a PLC that counts from zero: the boom starts 15 ms later each day.
 fn table(day: u32) -> String {
-    let mut text = "t_s,boom_planned_rad,boom_measured_rad\n".to_owned();
-    for k in 0..600 {
-        let t_s = 0.02 * f64::from(k);
+    timed("t_s,boom_planned_rad,boom_measured_rad", (600, 0.02), |t_s| {
         let at = |late_s: f64| {
             let stroke = |from_s: f64| crate::support::fleet::smooth((t_s - from_s - late_s) / 2.0);
             0.2 * stroke(2.0) - 0.2 * stroke(6.0)
         };
-        text += &format!("{t_s:.2},{:.6},{:.6}\n", at(0.0), at(0.1 + 0.015 * f64::from(day)));
-    }
-    text
+        format!("{t_s:.2},{:.6},{:.6}", at(0.0), at(0.1 + 0.015 * f64::from(day)))
+    })
 }
 
 #[test]

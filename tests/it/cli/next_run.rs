@@ -1,9 +1,9 @@
 //! `replan` over several runs: what older ones still tell, and what holds for the next line.
 
-use std::{fmt::Write as _, fs};
+use std::fs;
 
 use super::replan::{check, table, with_run};
-use crate::support::{clean, fleet::small_log, json, run_line, said, sample, scratch, stderr, stdout};
+use crate::support::{clean, fleet::small_log, json, run_line, said, sample, scratch, stderr, stdout, timed};
 
 #[test]
 fn a_task_that_begins_elsewhere_is_refused_and_bounds_hold_for_the_next_line() {
@@ -141,14 +141,13 @@ fn a_command_that_takes_the_tool_a_metre_off_its_plan_is_not_to_be_sent() {
 #[test]
 fn a_plan_that_steps_is_reported_and_fitted_and_no_command_is_made_of_it() {
     let folder = scratch();
-    let mut table = "time_s,boom_set_deg,boom_act_deg\n".to_owned();
     let targets = [(0.0, 0.0), (2.0, 12.0), (7.0, -5.0), (12.0, 6.0), (17.0, 0.0)];
     let set = |t_s: f64| targets.iter().rev().find(|(at_s, _)| t_s >= *at_s).map_or(0.0, |(_, set)| *set);
     let mut measured: f64 = 0.0;
-    for t_s in (0..1100).map(|k| 0.02 * f64::from(k)) {
+    let table = timed("time_s,boom_set_deg,boom_act_deg", (1100, 0.02), |t_s| {
         measured += (2.0 * (set(t_s - 0.25) - measured)).clamp(-8.0, 8.0) * 0.02;
-        writeln!(table, "{t_s:.2},{},{measured:.4}", set(t_s)).unwrap();
-    }
+        format!("{t_s:.2},{},{measured:.4}", set(t_s))
+    });
     fs::write(folder.path().join("run.csv"), table).unwrap();
     let said = |line: &str| said(&run_line(folder.path(), line));
     let (_, text, _) = said("report run.csv");

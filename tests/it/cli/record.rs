@@ -13,7 +13,7 @@ use std::{
 use serde_json::Value;
 
 use super::csv::{moves, report, trace};
-use crate::support::{command, run_args as hydrotrace, said};
+use crate::support::{command, run_args as hydrotrace, said, timed};
 
 pub(super) fn start(folder: &Path, args: &[&str]) -> Child {
     let mut recorder = command(folder);
@@ -107,12 +107,10 @@ fn a_recording_is_not_written_over_and_a_unit_not_guessed() {
 #[test]
 fn a_recording_comes_in_parts() {
     let folder = tempfile::tempdir().unwrap();
-    let mut text = "t_s,boom_set_mm,boom_act_mm\n".to_owned();
-    for k in 0..4500 {
-        let t_s = f64::from(k) * 0.02;
+    let text = timed("t_s,boom_set_mm,boom_act_mm", (4500, 0.02), |t_s| {
         let [planned, measured] = moves(t_s % 30.0).map(|q| q * 1000.0);
-        text += &format!("{t_s},{planned},{measured}\n");
-    }
+        format!("{t_s},{planned},{measured}")
+    });
     let (code, out, _) = recorded(folder.path(), &text, &["--part-minutes", "1", "--json"]);
     let written: Value = serde_json::from_str(&out).unwrap();
     crate::support::hold_to_schema(&written, "record.v1");

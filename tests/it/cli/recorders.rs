@@ -5,12 +5,11 @@ use std::{fmt::Write as _, fs, path::Path};
 
 use serde_json::Value;
 
-use crate::support::{hold_to_schema, run_line, said, scratch};
+use crate::support::{fleet::smooth, hold_to_schema, run_line, said, scratch, timed};
 
 /// A stroke of 8 deg in 2 s, as a share of the way.
 fn stroke(t: f64) -> f64 {
-    let t = (0.5 * t).clamp(0.0, 1.0);
-    t * t * t * (10.0 + t * (6.0 * t - 15.0))
+    smooth(0.5 * t)
 }
 
 /// Six strokes there and back, 6 s apart from 2 s on, deg.
@@ -101,13 +100,12 @@ fn a_log_that_ends_before_the_first_start_is_no_run_without_error() {
 fn a_sensor_that_fails_before_the_others_costs_no_start_of_theirs() {
     let folder = scratch();
     let write = |name: &str, by_s: f64, fails_s: f64| {
-        let mut text =
-            "t_s,boom planned [deg],boom measured [deg],arm planned [deg],arm measured [deg]\n".to_owned();
-        for t in (0..4000).map(|k| 0.01 * f64::from(k)) {
+        let head = "t_s,boom planned [deg],boom measured [deg],arm planned [deg],arm measured [deg]";
+        let text = timed(head, (4000, 0.01), |t| {
             let (boom, arm) = (late(by_s)(t), late(by_s)(t - 0.7));
             let arm = if t < fails_s { format!("{arm:.5}") } else { String::new() };
-            writeln!(text, "{t:.2},{:.5},{boom:.5},{:.5},{arm}", plan(t), plan(t - 0.7)).unwrap();
-        }
+            format!("{t:.2},{:.5},{boom:.5},{:.5},{arm}", plan(t), plan(t - 0.7))
+        });
         fs::write(folder.path().join(name), text).unwrap();
     };
     write("a.csv", 0.35, 99.0);

@@ -1,19 +1,17 @@
 //! Names, units, clocks and ends of lines as programs and controllers spell them: the same run, or a refusal that says what
 //! to do.
 
-use std::{fmt::Write as _, fs, path::Path};
+use std::{fs, path::Path};
 
 use super::csv::{import, moves, report, trace};
-use crate::support::{run_line as hydrotrace, said};
+use crate::support::{run_line as hydrotrace, said, timed};
 
 /// Rows at 50 Hz of a time and two joints, plan first, deg.
 fn two_joints(header: &str) -> String {
-    let mut text = format!("{header}\n");
-    for k in 0..500 {
-        let [plan, came] = moves(f64::from(k) * 0.02).map(f64::to_degrees);
-        writeln!(text, "{:.2},{plan},{},{came},{}", f64::from(k) * 0.02, -plan, -came).unwrap();
-    }
-    text
+    timed(header, (500, 0.02), |t_s| {
+        let [plan, came] = moves(t_s).map(f64::to_degrees);
+        format!("{t_s:.2},{plan},{},{came},{}", -plan, -came)
+    })
 }
 
 /// Peaks of the tracking errors, rad, of an import with these options, and what it said.
@@ -137,11 +135,10 @@ fn turns_are_angles_in_brackets_and_parts_of_a_rating_are_refused() {
 #[test]
 fn days_since_the_year_0_are_a_clock_and_told() {
     for (name, digits) in [("t", 10), ("datenum", 10), ("Time", 9)] {
-        let mut text = format!("{name},boom_set_rad,boom_act_rad\n");
-        for k in 0..500 {
-            let [plan, came] = moves(f64::from(k) * 0.02);
-            writeln!(text, "{:.digits$},{plan},{came}", 739_323.4 + f64::from(k) * 0.02 / 86_400.0).unwrap();
-        }
+        let text = timed(&format!("{name},boom_set_rad,boom_act_rad"), (500, 0.02), |t_s| {
+            let [plan, came] = moves(t_s);
+            format!("{:.digits$},{plan},{came}", 739_323.4 + t_s / 86_400.0)
+        });
         let said = assert_run(text.as_bytes(), "", &["boom"]);
         assert!(said.contains("counts days since year 0"), "{said}");
         assert_eq!(said.contains("guessed x1"), name != "datenum", "{said}");
@@ -171,14 +168,11 @@ fn the_type_of_a_variable_is_no_part_of_its_joint_and_no_measurement() {
 #[test]
 fn letters_of_an_orientation_beside_the_place_of_a_tool_are_no_joints() {
     let pose = |header: &str| {
-        let mut text = format!("{header}\n");
-        for k in 0..500 {
-            let t_s = f64::from(k) * 0.02;
+        timed(header, (500, 0.02), |t_s| {
             let [plan, came] = moves(t_s).map(f64::to_degrees);
             let side = |q: f64| format!("{},{q},{q},{q},{},{}", 1000.0 + q, q / 2.0, q / 3.0);
-            writeln!(text, "{t_s:.2},{plan},{came},{},{}", side(plan), side(came)).unwrap();
-        }
-        text
+            format!("{t_s:.2},{plan},{came},{},{}", side(plan), side(came))
+        })
     };
     let folder = tempfile::tempdir().unwrap();
     for header in [

@@ -1,8 +1,8 @@
 //! CSV files in and out as a field engineer meets them: what was sent is no plan.
 
-use std::{fmt::Write as _, fs, path::Path};
+use std::{fs, path::Path};
 
-use crate::support::{run_line as hydrotrace, said};
+use crate::support::{run_line as hydrotrace, said, timed};
 
 /// Angles, deg, of a joint that is asked to move at 2 s and follows 0.1 s later.
 fn moves(t_s: f64) -> [f64; 2] {
@@ -12,13 +12,10 @@ fn moves(t_s: f64) -> [f64; 2] {
 
 /// Rows at 50 Hz: time, then what was asked and what came of it for each of two joints.
 fn trace(header: &str) -> String {
-    let mut text = format!("{header}\n");
-    for k in 0..500 {
-        let t_s = f64::from(k) * 0.02;
+    timed(header, (500, 0.02), |t_s| {
         let [asked, came] = moves(t_s);
-        writeln!(text, "{t_s:.2},{asked},{came},{},{}", -asked, -came).unwrap();
-    }
-    text
+        format!("{t_s:.2},{asked},{came},{},{}", -asked, -came)
+    })
 }
 
 /// A folder with that table as `a.csv`.
@@ -243,13 +240,11 @@ fn told(folder: &Path, log: &str) -> (Vec<String>, Vec<f64>) {
 fn a_clock_that_goes_back_splits_the_run_and_costs_no_row() {
     for back_s in [0.3, 0.7, 5.0] {
         let folder = tempfile::tempdir().unwrap();
-        let mut text = "t [s],J1_ref_deg,J1_act_deg\n".to_owned();
-        for k in 0..500 {
-            let t_s = f64::from(k) * 0.02;
+        let text = timed("t [s],J1_ref_deg,J1_act_deg", (500, 0.02), |t_s| {
             let [asked, came] = moves(t_s % 5.0);
-            let shown_s = if k < 250 { t_s + 1.0 } else { t_s + 1.0 - back_s };
-            writeln!(text, "{shown_s:.2},{asked},{came}").unwrap();
-        }
+            let shown_s = if t_s < 5.0 { t_s + 1.0 } else { t_s + 1.0 - back_s };
+            format!("{shown_s:.2},{asked},{came}")
+        });
         fs::write(folder.path().join("a.csv"), text).unwrap();
         let (code, text, _) = said(&hydrotrace(folder.path(), "import a.csv -o a.mcap"));
         assert!(code == 3 && text.contains("clock-jump x1") && !text.contains("reordered"), "{text}");

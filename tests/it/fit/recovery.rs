@@ -8,6 +8,7 @@ use hydrotrace::{
 };
 
 use crate::support::{
+    fleet::smooth,
     machine::{HOME_DEG, excitation, measured, task},
     recovery::{QUANTITIES, is_limit, recover},
 };
@@ -71,10 +72,6 @@ fn signals_to_the_valves_show_the_dead_band_of_each_direction() {
 /// A smooth plan of one joint, there and back, with what came of it.
 fn there_and_back(came: impl Fn(f64, usize) -> f64) -> [Series; 2] {
     let t_s: Vec<f64> = (0..4000).map(|k| 0.01 * f64::from(k)).collect();
-    let smooth = |s: f64| {
-        let s = s.clamp(0.0, 1.0);
-        s * s * s * (10.0 + s * (6.0 * s - 15.0))
-    };
     let at = |t: f64| {
         (0..4).map(|k| smooth((t - 2.0 - 8.0 * f64::from(k)) / 4.0) * [0.2, -0.2][k as usize % 2]).sum()
     };

@@ -166,15 +166,7 @@ fn topics_say_a_side_and_go_with_messages_that_are_known() {
     assert_both(&log, ["boom", "stick"]);
 
     let joints = |log: &mut Log, topic: &str, values: fn(i64) -> Vec<f64>| {
-        let channel = log.channel(Channel::cdr(topic, "sensor_msgs/msg/JointState"));
-        for k in 0..SAMPLES {
-            let kind = cdr::Kind::LittleEndian;
-            log.send(
-                channel,
-                stamp(k),
-                encode::joint_state(kind, stamp(k), &["boom", "stick"], &values(k), &[]),
-            );
-        }
+        log.add(Channel::states(topic), 0..SAMPLES, |k| states(k, &["boom", "stick"], &values(k)));
     };
     let mut measured = Log::default();
     add(&mut measured, "/arm/reference", fields, write(plan));
@@ -239,15 +231,13 @@ fn places_of_lists_are_not_taken_for_joints_that_are_counted_otherwise() {
         let layout = "std_msgs/MultiArrayLayout layout\nfloat64[] data\n\
                       ================================================================================\n\
                       MSG: std_msgs/MultiArrayLayout\nuint32 data_offset\n";
-        let channel =
-            log.channel(Channel::cdr(topic, "std_msgs/msg/Float64MultiArray").with_schema("ros2msg", layout));
-        for k in 0..SAMPLES {
-            let data = Cdr::message(cdr::Kind::LittleEndian, |cdr| {
+        let channel = Channel::cdr(topic, "std_msgs/msg/Float64MultiArray").with_schema("ros2msg", layout);
+        log.add(channel, 0..SAMPLES, |k| {
+            Cdr::message(cdr::Kind::LittleEndian, |cdr| {
                 cdr.u32(0);
                 cdr.f64s(&values(k));
-            });
-            log.send(channel, stamp(k), data);
-        }
+            })
+        });
     }
     assert_both(&log, ["joint_0", "joint_1"]);
 }
@@ -269,39 +259,38 @@ fn protobuf_is_read_alike() {
     let arm = message("Arm", &[field("axes", 1, true, MESSAGE, ".our.Axis")]);
     let descriptors = descriptor_file("our.proto", "our", &[], &[axis, arm]);
     let mut log = Log::default();
-    let channel =
-        log.channel(Channel::cdr("/arm", "our.Arm").with_schema("protobuf", descriptors).encoded("protobuf"));
-    for k in 0..SAMPLES {
+    let channel = Channel::cdr("/arm", "our.Arm").with_schema("protobuf", descriptors).encoded("protobuf");
+    log.add(channel, 0..SAMPLES, |k| {
         let axes = ["boom", "stick"].iter().enumerate().flat_map(|(j, name)| {
             nested(
                 1,
                 &[nested(1, name.as_bytes()), double(2, plan(k)[j]), double(3, measurement(k)[j])].concat(),
             )
         });
-        log.send(channel, stamp(k), axes.collect());
-    }
+        axes.collect()
+    });
     assert_both(&log, ["boom", "stick"]);
 }
 
 #[test]
 fn json_is_read_alike() {
-    let mut log = Log::default();
-    let json = || Channel::cdr("/arm", "arm").with_schema("jsonschema", "{}").encoded("json");
-    let (channel, mut listed) = (log.channel(json()), Log::default());
-    let other = listed.channel(json());
-    for k in 0..SAMPLES {
+    let (mut log, mut listed) = (Log::default(), Log::default());
+    log.add(Channel::json("/arm", "arm"), 0..SAMPLES, |k| {
         let [p, m] = [plan(k), measurement(k)];
         let text = format!(
             "{{\"boom\":{{\"target\":{:?},\"actual\":{:?}}},\"stick\":{{\"target\":{:?},\"actual\":{:?}}},\"mode\":3}}",
             p[0], m[0], p[1], m[1]
         );
-        log.send(channel, stamp(k), text.into_bytes());
+        text.into_bytes()
+    });
+    listed.add(Channel::json("/arm", "arm"), 0..SAMPLES, |k| {
+        let [p, m] = [plan(k), measurement(k)];
         let text = format!(
             "{{\"ts\":{k},\"axes\":[{{\"set\":{:?},\"act\":{:?}}},{{\"set\":{:?},\"act\":{:?}}}]}}",
             p[0], m[0], p[1], m[1]
         );
-        listed.send(other, stamp(k), text.into_bytes());
-    }
+        text.into_bytes()
+    });
     assert_both(&log, ["boom", "stick"]);
     assert_both(&listed, ["axes_0", "axes_1"]);
 }
@@ -309,7 +298,6 @@ fn json_is_read_alike() {
 #[test]
 fn json_is_dated_by_its_own_stamps_where_these_say_the_date() {
     const START_MS: i64 = 1_750_000_000_000;
-    let json = || Channel::cdr("/arm", "arm").with_schema("jsonschema", "{}").encoded("json");
     let stamps: [fn(i64) -> String; 5] = [
         |k| format!("\"timestamp\":{}", START_MS + 20 * k),
         |k| format!("\"ts\":{:.2}", (START_MS + 20 * k) as f64 / 1e3),
@@ -325,7 +313,7 @@ fn json_is_dated_by_its_own_stamps_where_these_say_the_date() {
     ];
     for at in stamps {
         let mut log = Log::default();
-        let channel = log.channel(json());
+        let channel = log.channel(Channel::json("/arm", "arm"));
         for k in 0..SAMPLES.min(900) {
             let [p, m] = [plan(k), measurement(k)];
             let text = format!("{{{},\"boom\":{{\"target\":{:?},\"actual\":{:?}}}}}", at(k), p[0], m[0]);
@@ -339,10 +327,10 @@ fn json_is_dated_by_its_own_stamps_where_these_say_the_date() {
 
 #[test]
 fn stamps_that_rest_or_are_missing_on_one_side_date_nothing() {
-    let json = |topic: &str| Channel::cdr(topic, "arm").with_schema("jsonschema", "{}").encoded("json");
     for at in ["\"timestamp\":1750000000000,", "", "\"timestamp\":12.5,"] {
         let mut log = Log::default();
-        let [targets, actuals] = ["/plc/target", "/plc/actual"].map(|topic| log.channel(json(topic)));
+        let [targets, actuals] =
+            ["/plc/target", "/plc/actual"].map(|topic| log.channel(Channel::json(topic, "arm")));
         for k in 0..SAMPLES {
             let [p, m] = [plan(k), measurement(k)];
             let stamped = format!("{{\"timestamp\":{},\"boom\":{:?}}}", 1_760_000_000_000 + 20 * k, p[0]);

@@ -18,15 +18,11 @@ fn the_plan_is_found_by_name_and_commands_are_no_measurement() {
 #[test]
 fn joints_that_topics_of_another_kind_plan_belong_to_the_run_too() {
     let mut log = plain_log();
-    let kind = cdr::Kind::LittleEndian;
-    let channel = log.channel(file::Channel::cdr("/grip/joint_states", "sensor_msgs/msg/JointState"));
-    for k in 0..SAMPLES {
-        log.send(channel, stamp(k), encode::joint_state(kind, stamp(k), &["c"], &[1e-3 * k as f64], &[]));
-    }
-    let channel =
-        log.channel(file::Channel::cdr("/grip/joint_trajectory", "trajectory_msgs/msg/JointTrajectory"));
+    let grip = |k| states(k, &["c"], &[1e-3 * k as f64]);
+    log.add(Channel::states("/grip/joint_states"), 0..SAMPLES, grip);
+    let channel = Channel::cdr("/grip/joint_trajectory", "trajectory_msgs/msg/JointTrajectory");
     let points = [encode::Point::at(&[0.2])];
-    log.send(channel, stamp(1), encode::trajectory(kind, stamp(1), &["c"], &points));
+    log.add(channel, 1..2, |k| encode::trajectory(cdr::Kind::LittleEndian, stamp(k), &["c"], &points));
     let recording = read(&log);
     let mut planned = joints(&recording.planned);
     planned.sort_unstable();
@@ -73,14 +69,8 @@ fn errors_name_what_was_found_expected_and_how_to_mend_it() {
         no_plan.starts_with(&found) && no_plan.ends_with("whole.mcap` makes one log of both"),
         "{no_plan}"
     );
-    let mut strangers = Log::default();
-    add_joint_state(&mut strangers, "/planned/joint_states", plan);
-    let channel = strangers.channel(file::Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
-    strangers.send(
-        channel,
-        stamp(0),
-        encode::joint_state(cdr::Kind::LittleEndian, stamp(0), &["x"], &[0.0], &[]),
-    );
+    let mut strangers = Log::of_plan();
+    strangers.add(Channel::states("/joint_states"), 0..1, |k| states(k, &["x"], &[0.0]));
     let strangers = error(&strangers, &ReadOptions::default());
     assert!(
         strangers.starts_with("planned joints (a, b) and measured joints (x) have no name in common; choose"),
@@ -99,8 +89,7 @@ fn of_two_topics_whose_names_tell_nothing_the_other_is_the_other_side() {
         (options(&["/arm/generator"], &["/arm/encoders"], &[]), vec![]),
     ] {
         let recording = read_with(&log, &named);
-        assert_values(&recording.planned, plan);
-        assert_values(&recording.measured, measurement);
+        assert_usual(&recording);
         assert_eq!(codes(&recording.remarks), guesses);
     }
     add_joint_state(&mut log, "/arm/other", measurement);
@@ -114,18 +103,12 @@ fn of_two_topics_whose_names_tell_nothing_the_other_is_the_other_side() {
 
 #[test]
 fn joints_with_a_prefix_on_one_side_are_paired_and_that_is_said() {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
-    let channel = log.channel(file::Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
-    for k in 0..SAMPLES {
-        let names = ["ex1/a", "ex1_b_joint"];
-        let data = encode::joint_state(cdr::Kind::LittleEndian, stamp(k), &names, &measurement(k), &[]);
-        log.send(channel, stamp(k), data);
-    }
+    let mut log = Log::of_plan();
+    let prefixed = |k| states(k, &["ex1/a", "ex1_b_joint"], &measurement(k));
+    log.add(Channel::states("/joint_states"), 0..SAMPLES, prefixed);
     for names in [&[][..], &["a", "b"], &["ex1/a", "ex1_b_joint"]] {
         let recording = read_with(&log, &options(&[], &[], names));
-        assert_values(&recording.planned, plan);
-        assert_values(&recording.measured, measurement);
+        assert_usual(&recording);
         let remarks = recording.remarks.as_slice();
         assert_eq!(codes(&recording.remarks), [Code::Guessed]);
         assert!(remarks[0].message.contains("a with ex1/a, b with ex1_b_joint"), "{remarks:?}");

@@ -10,15 +10,10 @@ fn log_of(header_ns: impl Fn(i64) -> i64) -> Log {
     for (topic, values) in
         [("/planned/joint_states", plan as fn(i64) -> Vec<f64>), ("/joint_states", measurement)]
     {
-        let channel = log.channel(Channel::cdr(topic, "sensor_msgs/msg/JointState"));
-        for k in 0..SAMPLES {
+        log.add(Channel::states(topic), 0..SAMPLES, |k| {
             let stamp_ns = if topic == "/joint_states" { header_ns(k) } else { stamp(k) };
-            log.send(
-                channel,
-                stamp(k),
-                encode::joint_state(cdr::Kind::LittleEndian, stamp_ns, &NAMES, &values(k), &[]),
-            );
-        }
+            encode::joint_state(cdr::Kind::LittleEndian, stamp_ns, &NAMES, &values(k), &[])
+        });
     }
     for message in &mut log.messages {
         message.log_ns += 40_000_000;

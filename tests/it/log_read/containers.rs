@@ -8,8 +8,7 @@ use super::{file::store, *};
 fn how_a_log_is_stored_does_not_matter() {
     let log = plain_log();
     let usual = read(&log);
-    assert_values(&usual.planned, plan);
-    assert_values(&usual.measured, measurement);
+    assert_usual(&usual);
     let small = || WriteOptions::new().chunk_size(Some(1000));
     for (name, options) in [
         ("whole", WriteOptions::new()),

@@ -22,8 +22,7 @@ fn add(
     kind: cdr::Kind,
 ) {
     let schema = schema::controller_state(points, more.0, more.1.is_some());
-    let channel = log.channel(Channel::cdr(topic, TYPE).with_schema("ros2msg", schema));
-    for k in 0..SAMPLES {
+    log.add(Channel::cdr(topic, TYPE).with_schema("ros2msg", schema), 0..SAMPLES, |k| {
         let value = |point: &&str| match *point {
             _ if !filled.contains(point) => Point::default(),
             "desired" | "reference" => Point::at(&plan(k)),
@@ -31,16 +30,15 @@ fn add(
             _ => Point::at(&[0.005, 0.005]),
         };
         let points: Vec<Point> = points.iter().map(value).collect();
-        log.send(channel, stamp(k), controller_state(kind, stamp(k), &NAMES, &points, more.0, more.1));
-    }
+        controller_state(kind, stamp(k), &NAMES, &points, more.0, more.1)
+    });
 }
 
 fn one(points: &[&str], more: (bool, Option<f64>), filled: &[&str], kind: cdr::Kind) -> Recording {
     let mut log = Log::default();
     add(&mut log, "/arm/controller_state", points, more, filled, kind);
     let recording = read(&log);
-    assert_values(&recording.planned, plan);
-    assert_values(&recording.measured, measurement);
+    assert_usual(&recording);
     assert_eq!(codes(&recording.remarks), [], "{:?}", recording.remarks);
     recording
 }
@@ -91,25 +89,18 @@ fn the_two_topics_of_humble_are_not_counted_twice() {
     assert_eq!(recording.source.planned_topic, "/arm/controller_state");
     assert_eq!(recording.source.measured_topic, "/arm/controller_state");
     assert_eq!(recording.source.messages as i64, SAMPLES);
-    assert_values(&recording.planned, plan);
-    assert_values(&recording.measured, measurement);
+    assert_usual(&recording);
 }
 
 #[test]
 fn two_controllers_of_different_joints_are_both_read() {
     let mut log = Log::default();
     for (topic, names) in [("/left/controller_state", ["a", "b"]), ("/right/controller_state", ["c", "d"])] {
-        let channel = log.channel(
-            Channel::cdr(topic, TYPE).with_schema("ros2msg", schema::controller_state(&IRON, true, false)),
-        );
-        for k in 0..SAMPLES {
+        let schema = schema::controller_state(&IRON, true, false);
+        log.add(Channel::cdr(topic, TYPE).with_schema("ros2msg", schema), 0..SAMPLES, |k| {
             let points = [plan(k), measurement(k), vec![], vec![]].map(|q| Point::at(&q));
-            log.send(
-                channel,
-                stamp(k),
-                controller_state(cdr::Kind::LittleEndian, stamp(k), &names, &points, true, None),
-            );
-        }
+            controller_state(cdr::Kind::LittleEndian, stamp(k), &names, &points, true, None)
+        });
     }
     let recording = read(&log);
     assert_eq!(joints(&recording.planned), ["a", "b", "c", "d"]);
@@ -122,26 +113,19 @@ fn action_feedback_without_a_schema_is_read() {
         let mut log = Log::default();
         let topic = "/arm/follow_joint_trajectory/_action/feedback";
         let name = "control_msgs/action/FollowJointTrajectory_FeedbackMessage";
-        let channel = log.channel(Channel::cdr(topic, name).with_schema(stored, ""));
-        for k in 0..SAMPLES {
-            log.send(
-                channel,
-                stamp(k),
-                cdr::Cdr::message(kind, |cdr| {
-                    cdr.record(|cdr| (0..16).for_each(|byte| cdr.u8(byte)));
-                    cdr.record(|cdr| {
-                        cdr.header(stamp(k));
-                        cdr.texts(&NAMES);
-                        [plan(k), measurement(k), vec![0.005; 2]]
-                            .iter()
-                            .for_each(|q| Point::at(q).write(cdr));
-                        // Later versions go on.
-                        cdr.u32(0);
-                        cdr.u32(0);
-                    });
-                }),
-            );
-        }
+        log.add(Channel::cdr(topic, name).with_schema(stored, ""), 0..SAMPLES, |k| {
+            cdr::Cdr::message(kind, |cdr| {
+                cdr.record(|cdr| (0..16).for_each(|byte| cdr.u8(byte)));
+                cdr.record(|cdr| {
+                    cdr.header(stamp(k));
+                    cdr.texts(&NAMES);
+                    [plan(k), measurement(k), vec![0.005; 2]].iter().for_each(|q| Point::at(q).write(cdr));
+                    // Later versions go on.
+                    cdr.u32(0);
+                    cdr.u32(0);
+                });
+            })
+        });
         if stored == "none" {
             // Without a schema record there is no type name either.
             assert!(error(&log, &ReadOptions::default()).contains(topic));
@@ -149,8 +133,7 @@ fn action_feedback_without_a_schema_is_read() {
         }
         let recording = read(&log);
         assert_eq!(recording.source.planned_field, "feedback.desired.positions");
-        assert_values(&recording.planned, plan);
-        assert_values(&recording.measured, measurement);
+        assert_usual(&recording);
     }
 }
 

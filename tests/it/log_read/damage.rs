@@ -232,10 +232,7 @@ fn a_flipped_bit_outside_chunks_is_known_from_the_checksum_of_the_data() {
 #[test]
 fn messages_of_unknown_channels_are_counted() {
     let mut log = plain_log();
-    let odd = log.channel(Channel::cdr("/odd", "sensor_msgs/msg/JointState"));
-    for k in 0..5 {
-        log.send(odd, stamp(k), vec![1; 30]);
-    }
+    log.add(Channel::states("/odd"), 0..5, |_| vec![1; 30]);
     let without = Log { channels: log.channels[..2].to_vec(), ..Log::default() };
     let bytes = [MAGIC.to_vec(), without.definitions(), chunks("zstd", &log).concat(), end()].concat();
     let (all, remarks) = samples(&bytes);

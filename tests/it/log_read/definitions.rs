@@ -177,17 +177,14 @@ proptest! {
         fields.extend(name_all(&parts[2], "c"));
         let mut texts = Texts::default();
         texts.define("Root", &fields);
-        let mut log = Log::default();
-        add_joint_state(&mut log, "/planned/joint_states", plan);
+        let mut log = Log::of_plan();
         let channel = Channel::cdr("/m", "x/msg/Root");
-        let channel = log.channel(if idl { channel.with_schema("ros2idl", texts.ros2idl()) } else { channel.with_schema("ros2msg", texts.ros2msg()) });
-        for k in 0..3 {
-            log.send(channel, stamp(k), Cdr::message(kind, |cdr| {
-                for (at, (_, shape)) in fields.iter().enumerate() {
-                    if at == probe { cdr.f64s(&measurement(k)) } else { shape.write(cdr) }
-                }
-            }));
-        }
+        let channel = if idl { channel.with_schema("ros2idl", texts.ros2idl()) } else { channel.with_schema("ros2msg", texts.ros2msg()) };
+        log.add(channel, 0..3, |k| Cdr::message(kind, |cdr| {
+            for (at, (_, shape)) in fields.iter().enumerate() {
+                if at == probe { cdr.f64s(&measurement(k)) } else { shape.write(cdr) }
+            }
+        }));
         let bytes = log.bytes(mcap::WriteOptions::new().compression(None));
         let recording = hydrotrace::log::survey_bytes(&bytes, &options(&[], &["/m:angle"], &[])).unwrap().recording;
         // A list of nothing but empty structs has no least size that tells its forms apart.
@@ -238,18 +235,15 @@ fn a_random_type_of_each_kind_is_written_as_the_standard_says() {
 #[test]
 fn forms_of_xcdr2_are_told_apart_by_the_sizes_of_lists() {
     for kind in [Kind::Xcdr2, Kind::Xcdr2NoSizes] {
-        let mut log = Log::default();
-        add_joint_state(&mut log, "/planned/joint_states", plan);
+        let mut log = Log::of_plan();
         let schema = "string[] empty\nfloat64[] angle\n";
-        let channel = log.channel(Channel::cdr("/m", "x/msg/M").with_schema("ros2msg", schema));
-        for k in 0..3 {
+        log.add(Channel::cdr("/m", "x/msg/M").with_schema("ros2msg", schema), 0..3, |_| {
             // Read with sizes that are not there, this is two empty texts and no angles.
-            let data = Cdr::message(kind, |cdr| {
+            Cdr::message(kind, |cdr| {
                 cdr.texts(&[]);
                 cdr.f64s(&[0.0, 0.0]);
-            });
-            log.send(channel, stamp(k), data);
-        }
+            })
+        });
         let recording = read_with(&log, &options(&[], &["/m:angle"], &NAMES));
         assert_eq!(joints(&recording.measured), NAMES, "{kind:?}");
     }

@@ -1,6 +1,6 @@
 //! The same recording whatever the number of threads.
 
-use super::{cdr::Kind, encode, file::*, *};
+use super::{file::*, *};
 
 /// Many chunks, some damaged, of messages whose joints change, some undecodable.
 fn unruly() -> Vec<u8> {
@@ -13,15 +13,9 @@ fn unruly() -> Vec<u8> {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let values: Vec<f64> = (0..names.len()).map(|j| (k + j as i64) as f64 * 1e-3).collect();
         for channel in [planned, measured] {
-            let mut data = encode::joint_state(Kind::LittleEndian, stamp(k), &names, &values, &[]);
+            let mut data = states(k, &names, &values);
             if k % 13 == 0 || (k / 16) % 9 == 0 {
-                data = encode::joint_state(
-                    Kind::LittleEndian,
-                    stamp(k),
-                    &[&format!("phantom{k}"), "j3"],
-                    &[0.0; 2],
-                    &[],
-                );
+                data = states(k, &[&format!("phantom{k}"), "j3"], &[0.0; 2]);
                 data.truncate(data.len() - 9);
             }
             log.send(channel, stamp(k), data);

@@ -4,17 +4,11 @@ use super::{cdr::Kind, encode, file::Channel, *};
 
 /// Measured messages as `message` gives them (names, positions), against the usual plan.
 fn log_of(message: impl Fn(i64) -> (Vec<&'static str>, Vec<f64>)) -> Log {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
-    let channel = log.channel(Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
-    for k in 0..SAMPLES {
+    let mut log = Log::of_plan();
+    log.add(Channel::states("/joint_states"), 0..SAMPLES, |k| {
         let (names, position) = message(k);
-        log.send(
-            channel,
-            stamp(k),
-            encode::joint_state(Kind::LittleEndian, stamp(k), &names, &position, &[]),
-        );
-    }
+        states(k, &names, &position)
+    });
     log
 }
 
@@ -125,18 +119,15 @@ fn pauses_and_slow_stretches_are_counted() {
     let mut log = Log::default();
     let schema = schema::controller_state(&["reference", "feedback", "error", "output"], true, true);
     let channel = Channel::cdr("/arm/controller_state", "control_msgs/msg/JointTrajectoryControllerState");
-    let channel = log.channel(channel.with_schema("ros2msg", schema));
-    for k in 0..SAMPLES {
+    log.add(channel.with_schema("ros2msg", schema), 0..SAMPLES, |k| {
         let factor = match k {
             10..15 => 0.0,
             15..18 => 0.5,
             _ => 1.0,
         };
         let points = [plan(k), measurement(k), vec![], vec![]].map(|q| encode::Point::at(&q));
-        let data =
-            encode::controller_state(Kind::LittleEndian, stamp(k), &NAMES, &points, true, Some(factor));
-        log.send(channel, stamp(k), data);
-    }
+        encode::controller_state(Kind::LittleEndian, stamp(k), &NAMES, &points, true, Some(factor))
+    });
     let counts: Vec<u64> =
         read(&log).remarks.as_slice().iter().filter(|r| r.code == Code::Paused).map(|r| r.count).collect();
     assert_eq!(counts, [5, 3]);
@@ -166,8 +157,7 @@ fn where_joints_lie_in_an_encoding_that_is_not_read_the_error_says_so() {
     for (type_name, named) in [("", "no type"), ("foxglove.JointStates", "foxglove.JointStates")] {
         let mut log = Log::default();
         let channel = Channel::cdr("/arm", type_name).with_schema("", "").encoded("cbor");
-        let channel = log.channel(channel);
-        log.send(channel, stamp(0), vec![0; 9]);
+        log.add(channel, 0..1, |_| vec![0; 9]);
         let why = "its messages are encoded as \"cbor\", which is not read";
         let found = error(&log, &ReadOptions::default());
         assert!(found.contains(&format!("/arm ({named}, 1 message, {why}")), "{found}");
@@ -193,11 +183,9 @@ fn what_a_broken_message_said_of_joints_does_not_count() {
 #[test]
 fn a_broken_schema_costs_its_channel_and_says_why() {
     let mut log = log_of(|k| (NAMES.to_vec(), measurement(k)));
-    let odd = log
-        .channel(Channel::cdr("/odd", "sensor_msgs/msg/JointState").with_schema("ros2msg", "float64[ x\n"));
-    let idl =
-        log.channel(Channel::cdr("/idl", "sensor_msgs/msg/JointState").with_schema("omgidl", "float64 x\n"));
-    let secret = log.channel(Channel::cdr("/secret", "sensor_msgs/msg/JointState").encoded("xml"));
+    let odd = log.channel(Channel::states("/odd").with_schema("ros2msg", "float64[ x\n"));
+    let idl = log.channel(Channel::states("/idl").with_schema("omgidl", "float64 x\n"));
+    let secret = log.channel(Channel::states("/secret").encoded("xml"));
     for channel in [odd, odd, idl, secret] {
         log.send(channel, stamp(5), vec![0; 9]);
     }
@@ -249,8 +237,7 @@ fn one_broken_schema_of_a_split_recording_is_said() {
 #[test]
 fn one_sample_far_off_between_calm_neighbours_is_dropped_and_counted() {
     for off_rad in [1.0, -2.0, 0.7] {
-        let mut log = Log::default();
-        add_joint_state(&mut log, "/planned/joint_states", plan);
+        let mut log = Log::of_plan();
         let spoilt = move |k: i64| {
             let mut values = measurement(k);
             values[0] += if k == 20 { off_rad } else { 0.0 };

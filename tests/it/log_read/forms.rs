@@ -110,24 +110,22 @@ fn a_bag_in_sqlite_is_read_as_one_in_mcap() {
 #[test]
 fn a_controllers_state_without_a_definition_is_told_by_its_bytes() {
     let mut log = Log::default();
-    let channel = log.channel(Channel::cdr("/c/state", "control_msgs/msg/JointTrajectoryControllerState"));
     let point = |cdr: &mut Cdr, position: &[f64]| {
         cdr.f64s(position);
         (0..3).for_each(|_| cdr.f64s(&[]));
         cdr.time(0);
     };
-    for k in 0..SAMPLES {
-        let data = Cdr::message(Kind::LittleEndian, |cdr| {
+    let channel = Channel::cdr("/c/state", "control_msgs/msg/JointTrajectoryControllerState");
+    log.add(channel, 0..SAMPLES, |k| {
+        Cdr::message(Kind::LittleEndian, |cdr| {
             cdr.header(stamp(k));
             cdr.texts(&NAMES);
             [plan(k), measurement(k), vec![0.0; 2]].iter().for_each(|position| point(cdr, position));
-        });
-        log.send(channel, stamp(k), data);
-    }
+        })
+    });
     // As Foxy and Humble write it: desired, actual, error.
     let found = read_file("run.db3", &bag(&log, false), &ReadOptions::default()).unwrap();
-    assert_values(&found.planned, plan);
-    assert_values(&found.measured, measurement);
+    assert_usual(&found);
     assert_eq!(found.source.planned_field, "desired.positions");
 }
 
@@ -163,8 +161,7 @@ fn messages_of_ros_1_are_read() {
         message.data = data;
     }
     let found = read(&log);
-    assert_values(&found.planned, plan);
-    assert_values(&found.measured, measurement);
+    assert_usual(&found);
 }
 
 #[test]
@@ -176,8 +173,7 @@ fn a_table_is_read_as_the_log_that_import_makes_of_it() {
     }
     for (name, bytes) in [("a.csv", text.clone().into_bytes()), ("a.csv.gz", gzip(text.as_bytes()))] {
         let found = read_file(name, &bytes, &ReadOptions::default()).unwrap();
-        assert_values(&found.planned, plan);
-        assert_values(&found.measured, measurement);
+        assert_usual(&found);
     }
     let error = read_file("a.csv", b"x,y\n1,2\n3,4\n5,6\n", &ReadOptions::default()).unwrap_err();
     assert!(error.to_string().contains("hydrotrace import"), "{error}");
@@ -189,19 +185,16 @@ fn topics_of_one_number_each_are_joints() {
     for (joint, name) in NAMES.iter().enumerate() {
         for (role, values) in [("set", plan as fn(i64) -> Vec<f64>), ("actual", measurement)] {
             let channel = Channel::cdr(&format!("/{name}/{role}"), "std_msgs/msg/Float64");
-            let channel = log.channel(channel.with_schema("ros2msg", "float64 data\n"));
-            for k in 0..SAMPLES {
-                let data = Cdr::message(Kind::LittleEndian, |cdr| cdr.f64(values(k)[joint]));
-                log.send(channel, stamp(k), data);
-            }
+            log.add(channel.with_schema("ros2msg", "float64 data\n"), 0..SAMPLES, |k| {
+                Cdr::message(Kind::LittleEndian, |cdr| cdr.f64(values(k)[joint]))
+            });
         }
     }
     log.messages.sort_by_key(|message| message.log_ns);
     let (planned, measured) = (["/a/set:data", "/b/set:data"], ["/a/actual:data", "/b/actual:data"]);
     for joints in [&NAMES[..], &[]] {
         let found = read_with(&log, &options(&planned, &measured, joints));
-        assert_values(&found.planned, plan);
-        assert_values(&found.measured, measurement);
+        assert_usual(&found);
     }
     let found = read_with(&log, &options(&planned[..1], &measured[..1], &["boom"]));
     assert_eq!((joints(&found.planned), joints(&found.measured)), (vec!["boom"], vec!["boom"]));
@@ -212,19 +205,14 @@ fn numbers_in_json_one_a_topic_are_joints() {
     let mut log = Log::default();
     for (role, values) in [("set", plan as fn(i64) -> Vec<f64>), ("actual", measurement)] {
         for (joint, name) in NAMES.iter().enumerate() {
-            let channel =
-                Channel::cdr(&format!("/{name}/{role}"), "plc.Value").with_schema("jsonschema", "{}");
-            let channel = log.channel(channel.encoded("json"));
-            for k in 0..SAMPLES {
-                log.send(channel, stamp(k), format!("{{\"value\": {}}}", values(k)[joint]).into_bytes());
-            }
+            let said = |k| format!("{{\"value\": {}}}", values(k)[joint]).into_bytes();
+            log.add(Channel::json(&format!("/{name}/{role}"), "plc.Value"), 0..SAMPLES, said);
         }
     }
     log.messages.sort_by_key(|message| message.log_ns);
     let (planned, measured) = (["/a/set:value", "/b/set:value"], ["/a/actual:value", "/b/actual:value"]);
     let found = read_with(&log, &options(&planned, &measured, &NAMES));
-    assert_values(&found.planned, plan);
-    assert_values(&found.measured, measurement);
+    assert_usual(&found);
 }
 
 #[test]
@@ -245,11 +233,9 @@ fn a_topic_nobody_asked_for_is_no_doubt() {
 fn a_log_of_speeds_alone_says_so() {
     let mut log = Log::default();
     for topic in ["/planned/joint_states", "/joint_states"] {
-        let channel = log.channel(Channel::cdr(topic, "sensor_msgs/msg/JointState"));
-        for k in 0..SAMPLES {
-            let data = encode::joint_state(Kind::LittleEndian, stamp(k), &NAMES, &[], &[0.1, 0.2]);
-            log.send(channel, stamp(k), data);
-        }
+        log.add(Channel::states(topic), 0..SAMPLES, |k| {
+            encode::joint_state(Kind::LittleEndian, stamp(k), &NAMES, &[], &[0.1, 0.2])
+        });
     }
     let said = error(&log, &ReadOptions::default());
     assert!(said.contains("without positions"), "{said}");

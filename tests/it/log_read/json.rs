@@ -2,15 +2,9 @@
 
 use super::{file::Channel, *};
 
-fn json_channel(topic: &str, type_name: &str) -> Channel {
-    Channel::cdr(topic, type_name).with_schema("jsonschema", "{\"type\":\"object\"}").encoded("json")
-}
-
 fn log_of(type_name: &str, message: impl Fn(i64, &[f64]) -> String) -> Log {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
-    let channel = log.channel(json_channel("/joints", type_name));
-    (0..SAMPLES).for_each(|k| log.send(channel, stamp(k), message(k, &measurement(k)).into_bytes()));
+    let mut log = Log::of_plan();
+    log.add(Channel::json("/joints", type_name), 0..SAMPLES, |k| message(k, &measurement(k)).into_bytes());
     log
 }
 
@@ -95,7 +89,7 @@ fn a_message_that_is_no_json_is_counted() {
 fn trajectories_in_json() {
     let mut log = Log::default();
     add_joint_state(&mut log, "/joint_states", measurement);
-    let channel = log.channel(json_channel("/arm/joint_trajectory", "trajectory_msgs/msg/JointTrajectory"));
+    let channel = log.channel(Channel::json("/arm/joint_trajectory", "trajectory_msgs/msg/JointTrajectory"));
     let (sec, nanosec) = seconds(10);
     let text = format!(
         "{{\"points\":[{{\"time_from_start\":{{\"sec\":0,\"nanosec\":0}},\"positions\":[0.0,0.0]}},\

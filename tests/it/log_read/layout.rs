@@ -28,10 +28,8 @@ fn paths(log: &Log, options: &str) -> (Vec<String>, String) {
 
 /// The same of a log whose measurement is on a topic of another type.
 fn paths_beside_a_plan(type_name: &str, message: impl Fn(i64, &[f64]) -> Vec<u8>) -> (Vec<String>, String) {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
-    let channel = log.channel(Channel::cdr("/state", type_name));
-    (0..SAMPLES).for_each(|k| log.send(channel, stamp(k), message(k, &measurement(k))));
+    let mut log = Log::of_plan();
+    log.add(Channel::cdr("/state", type_name), 0..SAMPLES, |k| message(k, &measurement(k)));
     paths(&log, "")
 }
 
@@ -44,18 +42,13 @@ fn a_layout_of_a_controllers_state_has_its_plan_its_measurement_and_its_error() 
     let mut log = Log::default();
     let schema = schema::controller_state(&["reference", "feedback", "error", "output"], false, false);
     let channel = Channel::cdr("/state", "control_msgs/msg/JointTrajectoryControllerState");
-    let channel = log.channel(channel.with_schema("ros2msg", schema));
-    for k in 0..SAMPLES {
+    log.add(channel.with_schema("ros2msg", schema), 0..SAMPLES, |k| {
         let (planned, measured) = (plan(k), measurement(k));
         let error: Vec<f64> = planned.iter().zip(&measured).map(|(p, m)| p - m).collect();
         let points = [&planned[..], &measured, &error, &[]].map(Point::at);
         let points: Vec<Point> = points.into_iter().collect();
-        log.send(
-            channel,
-            stamp(k),
-            controller_state(Kind::LittleEndian, stamp(k), &NAMES, &points, false, None),
-        );
-    }
+        controller_state(Kind::LittleEndian, stamp(k), &NAMES, &points, false, None)
+    });
     let (found, _) = paths(&log, "");
     for expected in ["reference.positions", "feedback.positions", "error.positions"] {
         for place in 0..2 {
@@ -83,11 +76,8 @@ fn a_layout_of_interfaces_counts_joints_and_their_values() {
 
 #[test]
 fn a_layout_of_joint_states_of_foxglove_asks_for_names() {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
-    let channel = Channel::cdr("/state", "foxglove.JointStates");
-    let channel = log.channel(channel.with_schema("jsonschema", "{\"type\":\"object\"}").encoded("json"));
-    for k in 0..SAMPLES {
+    let mut log = Log::of_plan();
+    log.add(Channel::json("/state", "foxglove.JointStates"), 0..SAMPLES, |k| {
         let q = measurement(k);
         let joint = |name: &str, q: f64| format!("{{\"name\":\"{name}\",\"position\":{q:?}}}");
         // Their order changes, which the names make good.
@@ -96,9 +86,8 @@ fn a_layout_of_joint_states_of_foxglove_asks_for_names() {
         } else {
             [joint("b", q[1]), joint("a", q[0])]
         };
-        let text = format!("{{\"joints\":[{}]}}", joints.join(","));
-        log.send(channel, stamp(k), text.into_bytes());
-    }
+        format!("{{\"joints\":[{}]}}", joints.join(",")).into_bytes()
+    });
     let (found, _) = paths(&log, "");
     let expected = [".joints[:]{name==\"a\"}.position.@rad2deg", ".joints[:]{name==\"b\"}.position.@rad2deg"];
     assert_eq!(ends_of(&found), expected);
@@ -108,8 +97,8 @@ fn a_layout_of_joint_states_of_foxglove_asks_for_names() {
 fn a_layout_of_an_array_without_names_counts_its_places() {
     let mut log = Log::default();
     add_joint_state(&mut log, "/joint_states", measurement);
-    let channel = log.channel(Channel::cdr("/plan/of arm", "std_msgs/msg/Float64MultiArray"));
-    (0..SAMPLES).for_each(|k| log.send(channel, stamp(k), array(Kind::LittleEndian, &plan(k))));
+    let channel = Channel::cdr("/plan/of arm", "std_msgs/msg/Float64MultiArray");
+    log.add(channel, 0..SAMPLES, |k| array(Kind::LittleEndian, &plan(k)));
     log.messages.sort_by_key(|message| message.log_ns);
     let (found, _) = paths(&log, " --joints a,b");
     assert!(found.contains(&"\"/plan/of arm\".data[1].@rad2deg".to_owned()), "{found:?}");

@@ -20,8 +20,7 @@ fn cost(bytes: &[u8]) -> (u64, u64) {
 fn joint_state_log(schema: &[u8], encoding: &str, data: &[u8]) -> Vec<u8> {
     let mut log = plain_log();
     let channel = Channel::cdr("/bomb", "sensor_msgs/msg/JointState").with_schema(encoding, schema);
-    let channel = log.channel(channel);
-    (0..10).for_each(|k| log.send(channel, stamp(k), data.to_vec()));
+    log.add(channel, 0..10, |_| data.to_vec());
     log.bytes(mcap::WriteOptions::new())
 }
 
@@ -134,10 +133,9 @@ fn a_hundred_thousand_joints_are_no_arm() {
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let values = vec![0.5; names.len()];
     let mut log = plain_log();
-    let channel = log.channel(Channel::cdr("/many/joint_states", "sensor_msgs/msg/JointState"));
-    log.send(channel, stamp(3), encode::joint_state(Kind::LittleEndian, stamp(3), &names, &values, &[]));
-    let nameless = log.channel(Channel::cdr("/many/array", "std_msgs/msg/Float64MultiArray"));
-    log.send(nameless, stamp(3), encode::array(Kind::LittleEndian, &values));
+    log.add(Channel::states("/many/joint_states"), 3..4, |k| states(k, &names, &values));
+    let nameless = Channel::cdr("/many/array", "std_msgs/msg/Float64MultiArray");
+    log.add(nameless, 3..4, |_| encode::array(Kind::LittleEndian, &values));
     let recording = read(&log);
     assert_values(&recording.measured, measurement);
     let bytes = log.bytes(mcap::WriteOptions::new().compression(None));
@@ -148,19 +146,13 @@ fn a_hundred_thousand_joints_are_no_arm() {
 
 #[test]
 fn joints_that_differ_in_every_message_end_somewhere() {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
-    let channel = log.channel(Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
-    for k in 0..20_000 {
+    let mut log = Log::of_plan();
+    log.add(Channel::states("/joint_states"), 0..20_000, |k| {
         let names = [format!("x{k}"), format!("y{k}")];
         let names: [&str; 2] = [&names[0], &names[1]];
         let names = if k < SAMPLES { NAMES } else { names };
-        log.send(
-            channel,
-            stamp(k),
-            encode::joint_state(Kind::LittleEndian, stamp(k), &names, &[0.5, 0.6], &[]),
-        );
-    }
+        states(k, &names, &[0.5, 0.6])
+    });
     for per_chunk in [1, 100_000] {
         let bytes = log.by_hand("", per_chunk);
         let (peak, total) = cost(&bytes);
@@ -202,9 +194,8 @@ fn many_small_definitions_do_not_multiply() {
 
 #[test]
 fn a_clock_that_jumps_back_at_every_message_is_only_slow_to_read_about() {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
-    let channel = log.channel(Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
+    let mut log = Log::of_plan();
+    let channel = log.channel(Channel::states("/joint_states"));
     for k in 0..100_000 {
         let header = stamp(0) + (100_000 - k) * 2_000_000_000;
         log.send(
@@ -225,10 +216,8 @@ fn protobuf_fields_that_nobody_wants_are_not_built() {
     let message = protobuf::message("JointStates", &fields);
     let schema = protobuf::descriptor_file("a.proto", "foxglove", &[], &[message]);
     let mut log = plain_log();
-    let channel = log.channel(
-        Channel::cdr("/many", "foxglove.JointStates").with_schema("protobuf", schema).encoded("protobuf"),
-    );
-    (0..2000).for_each(|k| log.send(channel, stamp(k), vec![]));
+    let channel = Channel::cdr("/many", "foxglove.JointStates").with_schema("protobuf", schema);
+    log.add(channel.encoded("protobuf"), 0..2000, |_| vec![]);
     let bytes = log.bytes(mcap::WriteOptions::new());
     let (_, total) = cost(&bytes);
     println!("{} bytes: total {total}", bytes.len());

@@ -30,7 +30,7 @@ mod topics;
 mod trajectories;
 mod transforms;
 
-use std::path::PathBuf;
+use std::{ops::Range, path::PathBuf};
 
 use hydrotrace::{
     log::{LogError, ReadOptions, Recording, Selector, Survey},
@@ -119,19 +119,52 @@ fn assert_values(series: &Series, values: impl Fn(i64) -> Vec<f64>) {
     }
 }
 
+impl Channel {
+    /// A topic of `JointState`.
+    fn states(topic: &str) -> Self {
+        Self::cdr(topic, "sensor_msgs/msg/JointState")
+    }
+
+    fn json(topic: &str, type_name: &str) -> Self {
+        Self::cdr(topic, type_name).with_schema("jsonschema", "{}").encoded("json")
+    }
+}
+
+impl Log {
+    /// Of the usual plan; a measurement is to come.
+    fn of_plan() -> Self {
+        let mut log = Self::default();
+        add_joint_state(&mut log, "/planned/joint_states", plan);
+        log
+    }
+
+    /// Adds a topic that says something at the stamp of each sample.
+    fn add(&mut self, channel: Channel, samples: Range<i64>, message: impl Fn(i64) -> Vec<u8>) {
+        let channel = self.channel(channel);
+        samples.for_each(|k| self.send(channel, stamp(k), message(k)));
+    }
+}
+
+/// A `JointState` of a sample.
+fn states(k: i64, names: &[&str], position: &[f64]) -> Vec<u8> {
+    encode::joint_state(cdr::Kind::LittleEndian, stamp(k), names, position, &[])
+}
+
+/// The usual plan and measurement.
+#[track_caller]
+fn assert_usual(recording: &Recording) {
+    assert_values(&recording.planned, plan);
+    assert_values(&recording.measured, measurement);
+}
+
 /// Adds a `JointState` topic of all samples.
 fn add_joint_state(log: &mut Log, topic: &str, values: impl Fn(i64) -> Vec<f64>) {
-    let channel = log.channel(Channel::cdr(topic, "sensor_msgs/msg/JointState"));
-    for k in 0..SAMPLES {
-        let data = encode::joint_state(cdr::Kind::LittleEndian, stamp(k), &NAMES, &values(k), &[]);
-        log.send(channel, stamp(k), data);
-    }
+    log.add(Channel::states(topic), 0..SAMPLES, |k| states(k, &NAMES, &values(k)));
 }
 
 /// A log of a plan and a measurement, both `JointState`.
 fn plain_log() -> Log {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
+    let mut log = Log::of_plan();
     add_joint_state(&mut log, "/joint_states", measurement);
     log.messages.sort_by_key(|message| message.log_ns);
     log

@@ -219,11 +219,8 @@ fn a_path_is_a_plan_and_odometry_a_measurement() {
 #[test]
 fn a_path_without_times_is_said() {
     let mut log = Log::default();
-    let [plan, came] = [path("/plan"), odometry("/odom")].map(|channel| log.channel(channel));
-    log.send(plan, stamp(0), path_message(0..400, |_| START_NS));
-    for k in 0..INSTANTS {
-        log.send(came, stamp(k), odometry_message(stamp(k), measured(k)));
-    }
+    log.add(path("/plan"), 0..1, |_| path_message(0..400, |_| START_NS));
+    log.add(odometry("/odom"), 0..INSTANTS, |k| odometry_message(stamp(k), measured(k)));
     let bytes = log.bytes(WriteOptions::new());
     let survey = survey_bytes(&bytes);
     assert_eq!(codes(&survey.remarks), [Code::UnusableStamp]);

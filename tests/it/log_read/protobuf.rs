@@ -96,12 +96,10 @@ pub(crate) fn joint_states_message(k: i64, q: &[f64]) -> Vec<u8> {
 }
 
 pub(crate) fn log_of(schema: &[u8]) -> Log {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
+    let mut log = Log::of_plan();
     let channel =
         Channel::cdr("/joints", "foxglove.JointStates").with_schema("protobuf", schema).encoded("protobuf");
-    let channel = log.channel(channel);
-    (0..SAMPLES).for_each(|k| log.send(channel, stamp(k), joint_states_message(k, &measurement(k))));
+    log.add(channel, 0..SAMPLES, |k| joint_states_message(k, &measurement(k)));
     log
 }
 

@@ -4,22 +4,16 @@ use super::{cdr::KINDS, encode, file::Channel, *};
 
 #[test]
 fn joints_are_joined_by_name_whatever_their_order_and_subset() {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
-    let channel = log.channel(Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
-    for k in 0..SAMPLES {
+    let mut log = Log::of_plan();
+    log.add(Channel::states("/joint_states"), 0..SAMPLES, |k| {
         let q = measurement(k);
         let (names, values): (&[&str], Vec<f64>) = match k % 3 {
             0 => (&["a", "b"], vec![q[0], q[1]]),
             1 => (&["b", "other", "a"], vec![q[1], 7.0, q[0]]),
             _ => (&["b"], vec![q[1]]),
         };
-        log.send(
-            channel,
-            stamp(k),
-            encode::joint_state(cdr::Kind::LittleEndian, stamp(k), names, &values, &[]),
-        );
-    }
+        states(k, names, &values)
+    });
     let recording = read(&log);
     let (a, b) = (recording.measured.track("a").unwrap(), recording.measured.track("b").unwrap());
     assert_eq!((a.len(), b.len()), (34, 50));
@@ -35,9 +29,8 @@ fn joints_are_joined_by_name_whatever_their_order_and_subset() {
 /// A log of a plan, and of two publishers that send a joint each on one topic, the second `late_ns` after the first and
 /// stamped `stamped_ns` after it.
 fn two_publishers(late_ns: i64, stamped_ns: i64) -> Log {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
-    let channel = log.channel(Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
+    let mut log = Log::of_plan();
+    let channel = log.channel(Channel::states("/joint_states"));
     for k in 0..SAMPLES {
         for (j, after_ns, own_ns) in [(0, 0, stamp(k)), (1, late_ns, stamp(k) + stamped_ns)] {
             let data = encode::joint_state(
@@ -82,10 +75,9 @@ fn two_publishers_of_one_topic_are_each_judged_by_themselves() {
 fn joint_states_in_every_encoding_with_velocities() {
     for kind in KINDS {
         let mut log = Log::default();
-        let channel = log.channel(Channel::cdr("/planned/joint_states", "sensor_msgs/msg/JointState"));
-        for k in 0..SAMPLES {
-            log.send(channel, stamp(k), encode::joint_state(kind, stamp(k), &NAMES, &plan(k), &[0.5, -1.0]));
-        }
+        log.add(Channel::states("/planned/joint_states"), 0..SAMPLES, |k| {
+            encode::joint_state(kind, stamp(k), &NAMES, &plan(k), &[0.5, -1.0])
+        });
         add_joint_state(&mut log, "/joint_states", measurement);
         let recording = read(&log);
         assert_values(&recording.planned, plan);
@@ -95,23 +87,10 @@ fn joint_states_in_every_encoding_with_velocities() {
 
 #[test]
 fn subsets_on_several_topics_are_put_together() {
-    let mut log = Log::default();
-    add_joint_state(&mut log, "/planned/joint_states", plan);
+    let mut log = Log::of_plan();
     for (j, topic) in ["/left/joint_states", "/right/joint_states"].into_iter().enumerate() {
-        let channel = log.channel(Channel::cdr(topic, "sensor_msgs/msg/JointState"));
-        for k in 0..SAMPLES {
-            log.send(
-                channel,
-                stamp(k),
-                encode::joint_state(
-                    cdr::Kind::LittleEndian,
-                    stamp(k),
-                    &NAMES[j..=j],
-                    &measurement(k)[j..=j],
-                    &[],
-                ),
-            );
-        }
+        let one = |k| states(k, &NAMES[j..=j], &measurement(k)[j..=j]);
+        log.add(Channel::states(topic), 0..SAMPLES, one);
     }
     let recording = read(&log);
     assert_values(&recording.measured, measurement);
@@ -144,11 +123,9 @@ fn the_plan_is_of_the_arm_whose_measurement_is_named() {
 #[test]
 fn dynamic_joint_states_yield_positions_and_other_interfaces_by_name() {
     for kind in KINDS {
-        let mut log = Log::default();
-        add_joint_state(&mut log, "/planned/joint_states", plan);
-        let channel =
-            log.channel(Channel::cdr("/dynamic_joint_states", "control_msgs/msg/DynamicJointState"));
-        for k in 0..SAMPLES {
+        let mut log = Log::of_plan();
+        let channel = Channel::cdr("/dynamic_joint_states", "control_msgs/msg/DynamicJointState");
+        log.add(channel, 0..SAMPLES, |k| {
             let q = measurement(k);
             let joints: [(&str, &[(&str, f64)]); 4] = [
                 ("tank", &[("pressure", 2e5)]),
@@ -156,8 +133,8 @@ fn dynamic_joint_states_yield_positions_and_other_interfaces_by_name() {
                 ("a", &[("position", q[0]), ("velocity", 0.5)]),
                 ("gripper", &[]),
             ];
-            log.send(channel, stamp(k), encode::dynamic(kind, stamp(k), &joints));
-        }
+            encode::dynamic(kind, stamp(k), &joints)
+        });
         let recording = read(&log);
         let [b, a] = &recording.measured.tracks[..] else { panic!("{:?}", joints(&recording.measured)) };
         assert_eq!((b.name(), a.name()), ("b", "a"));
@@ -230,8 +207,7 @@ fn introspection(spell: fn(&str) -> String) -> Log {
 #[test]
 fn introspection_values_are_joined_to_their_names_by_version() {
     let recording = versioned(str::to_owned);
-    assert_values(&recording.planned, plan);
-    assert_values(&recording.measured, measurement);
+    assert_usual(&recording);
     assert!(recording.remarks.is_empty(), "{:?}", recording.remarks);
 }
 
@@ -278,12 +254,11 @@ fn introspection_values_are_chosen_by_their_names() {
 fn a_nameless_array_takes_its_joints_from_the_caller() {
     for kind in KINDS {
         let mut log = Log::default();
-        let channel = log.channel(Channel::cdr("/arm/commands", "std_msgs/msg/Float64MultiArray"));
-        (0..SAMPLES).for_each(|k| log.send(channel, stamp(k), encode::array(kind, &plan(k))));
+        let channel = Channel::cdr("/arm/commands", "std_msgs/msg/Float64MultiArray");
+        log.add(channel, 0..SAMPLES, |k| encode::array(kind, &plan(k)));
         add_joint_state(&mut log, "/joint_states", measurement);
         let recording = read_with(&log, &options(&["/arm/commands"], &[], &NAMES));
-        assert_values(&recording.planned, plan);
-        assert_values(&recording.measured, measurement);
+        assert_usual(&recording);
         assert_eq!(recording.source.time_base, hydrotrace::log::TimeBase::Publish);
         assert_eq!(count(&recording.remarks, Code::JointsChange), 0, "{:?}", recording.remarks);
     }
@@ -292,25 +267,19 @@ fn a_nameless_array_takes_its_joints_from_the_caller() {
 #[test]
 fn foxglove_joint_states_of_ros_are_read_in_every_encoding() {
     for kind in KINDS {
-        let mut log = Log::default();
-        add_joint_state(&mut log, "/planned/joint_states", plan);
-        let channel = log.channel(Channel::cdr("/joints", "foxglove_msgs/msg/JointStates"));
-        for k in 0..SAMPLES {
+        let mut log = Log::of_plan();
+        log.add(Channel::cdr("/joints", "foxglove_msgs/msg/JointStates"), 0..SAMPLES, |k| {
             let q = measurement(k);
-            log.send(
-                channel,
-                stamp(k),
-                cdr::Cdr::message(kind, |cdr| {
-                    cdr.time(stamp(k));
-                    cdr.list(&[("a", q[0]), ("b", q[1])], |cdr, (name, position)| {
-                        cdr.record(|cdr| {
-                            cdr.text(name);
-                            [*position, 0.0, 0.0, 0.0].iter().for_each(|v| cdr.f64(*v));
-                        });
+            cdr::Cdr::message(kind, |cdr| {
+                cdr.time(stamp(k));
+                cdr.list(&[("a", q[0]), ("b", q[1])], |cdr, (name, position)| {
+                    cdr.record(|cdr| {
+                        cdr.text(name);
+                        [*position, 0.0, 0.0, 0.0].iter().for_each(|v| cdr.f64(*v));
                     });
-                }),
-            );
-        }
+                });
+            })
+        });
         let recording = read(&log);
         assert_values(&recording.measured, measurement);
         assert_eq!(recording.source.time_base, hydrotrace::log::TimeBase::Header);

@@ -12,11 +12,9 @@ const TOPIC: &str = "/arm/joint_trajectory";
 /// A measurement of ten seconds at rest, and a plan as the points say, sent at `at_ns`.
 fn log_of(plans: &[(i64, i64, &[&str], Vec<Point>)], kind: cdr::Kind) -> Log {
     let mut log = Log::default();
-    let channel = log.channel(Channel::cdr("/joint_states", "sensor_msgs/msg/JointState"));
-    for k in 0..500 {
-        let data = encode::joint_state(kind, stamp(k), &NAMES, &[1e-6 * k as f64, 1e-4 * k as f64], &[]);
-        log.send(channel, stamp(k), data);
-    }
+    log.add(Channel::states("/joint_states"), 0..500, |k| {
+        encode::joint_state(kind, stamp(k), &NAMES, &[1e-6 * k as f64, 1e-4 * k as f64], &[])
+    });
     let channel = log.channel(Channel::cdr(TOPIC, "trajectory_msgs/msg/JointTrajectory"));
     for (at_ns, header_ns, names, points) in plans {
         log.send(channel, *at_ns, trajectory(kind, *header_ns, names, points));
@@ -182,8 +180,7 @@ fn trajectories_of_moveit_are_read_where_the_file_does_not_describe_them() {
             log.channels.pop();
             let channel = Channel::cdr("/plan_to_run", type_name);
             let channel = if described { channel } else { channel.with_schema("ros2msg", "") };
-            let channel = log.channel(channel);
-            log.send(channel, stamp(40), data.clone());
+            log.add(channel, 40..41, |_| data.clone());
             let recording = read(&log);
             assert_plan(&recording, 2.0, 0.5);
             assert!(recording.remarks.is_empty(), "{type_name} {:?}", recording.remarks);

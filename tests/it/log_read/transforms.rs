@@ -67,10 +67,8 @@ fn transforms_are_poses_of_the_frames_that_are_named() {
 #[test]
 fn transforms_against_stamped_poses() {
     let mut log = log_of("/tf");
-    let plan = log.channel(poses::stamped("/planned/tool_pose"));
-    for k in 0..INSTANTS {
-        log.send(plan, stamp(k), poses::pose_stamped(stamp(k), planned(k)));
-    }
+    let plan = |k| poses::pose_stamped(stamp(k), planned(k));
+    log.add(poses::stamped("/planned/tool_pose"), 0..INSTANTS, plan);
     assert_truth(&reported(&log, options(&["/planned/tool_pose"], &["/tf:tool"], &[])).unwrap());
 }
 
@@ -78,8 +76,7 @@ fn transforms_against_stamped_poses() {
 fn transforms_in_json_are_read_alike() {
     let mut log = Log::default();
     let foxglove = Channel { type_name: "foxglove.FrameTransforms".into(), ..tf("/tf") };
-    let channel = log.channel(foxglove.with_schema("jsonschema", "{}").encoded("json"));
-    for k in 0..INSTANTS {
+    log.add(foxglove.with_schema("jsonschema", "{}").encoded("json"), 0..INSTANTS, |k| {
         let all = sent(k).map(|(frame, parent, [x, y, z, qx, qy, qz, qw])| {
             json!({
                 "timestamp": {"sec": stamp(k) / 1_000_000_000, "nsec": stamp(k) % 1_000_000_000},
@@ -88,8 +85,8 @@ fn transforms_in_json_are_read_alike() {
                 "rotation": {"x": qx, "y": qy, "z": qz, "w": qw},
             })
         });
-        log.send(channel, stamp(k), json!({ "transforms": all }).to_string().into_bytes());
-    }
+        json!({ "transforms": all }).to_string().into_bytes()
+    });
     assert_truth(&reported(&log, options(&["/tf:tool_plan"], &["/tf:tool"], &[])).unwrap());
 }
 
@@ -140,9 +137,6 @@ fn transforms_are_never_chosen_by_themselves() {
     let alone = error(&log, &ReadOptions::default());
     assert!(alone.contains("/tf (tf2_msgs/msg/TFMessage, 1200 messages)"), "{alone}");
     let mut both = plain_log();
-    let channel = both.channel(tf("/planned/tf"));
-    for k in 0..SAMPLES {
-        both.send(channel, stamp(k), message(stamp(k), &sent(k)));
-    }
+    both.add(tf("/planned/tf"), 0..SAMPLES, |k| message(stamp(k), &sent(k)));
     assert_eq!(joints(&read(&both).planned), NAMES);
 }

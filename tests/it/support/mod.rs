@@ -100,6 +100,12 @@ pub(crate) fn scratch() -> tempfile::TempDir {
     folder
 }
 
+/// A header, and a line for each of some instants that are `step_s` apart.
+pub(crate) fn timed(head: &str, (rows, step_s): (u32, f64), mut line: impl FnMut(f64) -> String) -> String {
+    let rows = (0..rows).map(|k| line(step_s * f64::from(k)) + "\n");
+    std::iter::once(format!("{head}\n")).chain(rows).collect()
+}
+
 /// Holds a document to a committed schema, say `report.v2`.
 pub(crate) fn hold_to_schema(document: &Value, name: &str) {
     let schema = std::fs::read_to_string(root().join(format!("schemas/{name}.schema.json"))).unwrap();

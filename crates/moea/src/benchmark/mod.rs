@@ -66,7 +66,6 @@ impl Benchmark {
     /// The same problem with other numbers of positions and distances; `None` where the family
     /// does not allow them: DTLZ has m - 1 positions, WFG a multiple of it and an even number
     /// of distances, both at least one distance; there are at most a million variables.
-    #[must_use]
     pub fn with_variables(self, positions: usize, distances: usize) -> Option<Self> {
         let groups = self.objectives - 1;
         let fits = match self.family {

@@ -1,12 +1,9 @@
 //! Measurements of one plan whose clock, pace and lag are known.
 
 use super::*;
+use crate::math::smooth_step as step;
 
 fn series(at_s: impl Fn(f64) -> f64) -> Series {
-    let step = |t: f64| {
-        let x = t.clamp(0.0, 1.0);
-        x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
-    };
     let plan = |joint: f64, t: f64| joint * (step((t - 4.0) / 8.0) - 0.6 * step((t - 20.0) / 6.0));
     let track = |name: &str, size: f64| Track::sampled(name, 4000, |t| plan(size, at_s(t)));
     Series { tracks: vec![track("swing", 1.0), track("boom", -0.5), track("stick", 0.8)] }
@@ -77,10 +74,7 @@ fn what_machines_do_is_not() {
     }
     assert_eq!(said(|t| t.min(10.0)), None, "they stop for good");
     // A short motion behind a delay and a lag takes longer, and no other speed.
-    let short = |at_s: f64| {
-        let x = ((at_s - 4.0) / 1.2).clamp(0.0, 1.0);
-        0.5 * x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
-    };
+    let short = |at_s: f64| 0.5 * step((at_s - 4.0) / 1.2);
     let mut now = 0.0;
     let follow = |t: f64| {
         now += (short(t - 0.1) - now) * (1.0 - (-0.01_f64 / 0.25).exp());

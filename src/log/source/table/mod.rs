@@ -19,7 +19,7 @@ use message::{Message, Names};
 use places::InterfacePlaces;
 
 /// Samples of one topic.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(in crate::log) struct Table {
     pub(in crate::log) form: Form,
     pub(in crate::log) fields: Vec<Field>,
@@ -95,28 +95,17 @@ impl Table {
         Self {
             form,
             fields: fields.to_vec(),
-            stamps: Stamps::default(),
-            joints: Vec::new(),
             columns: vec![Vec::new(); fields.len()],
-            speed_scaling: Vec::new(),
             not_finite: vec![0; fields.len()],
             length_mismatch: vec![0; fields.len()],
-            too_many: 0,
-            told_in: Vec::new(),
-            expected: 0,
             message: Message {
                 values: vec![Vec::new(); fields.len()],
                 absent: vec![0; fields.len()],
                 ..Message::default()
             },
-            layout: Layout::default(),
-            lists: Lists::default(),
             default_joints: joints.to_vec(),
             alone: alone.map(str::to_owned),
-            interfaces: InterfacePlaces::default(),
-            index: BTreeMap::new(),
-            spare: Vec::new(),
-            alike: Alike::default(),
+            ..Self::default()
         }
     }
 
