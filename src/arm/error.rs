@@ -18,7 +18,7 @@ pub enum ArmError {
     #[error("{file}: {element}: found {found}, expected {expected}")]
     Unexpected { file: String, element: String, found: String, expected: String },
     /// The end of the chain is not given and could be any of these links.
-    #[error("{file}: the tool could be any of {}; name one", tools.join(", "))]
+    #[error("{file}: the tool could be any of {}; name one (in a task: tool = \"{}\")", tools.join(", "), tools.first().map_or("", String::as_str))]
     SeveralTools { file: String, tools: Vec<String> },
     #[error("{file}: the link {tool} cannot be placed without the positions of {}", joints.join(", "))]
     JointsMissing { file: String, tool: String, joints: Vec<String> },

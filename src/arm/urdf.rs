@@ -157,15 +157,20 @@ impl<'a> Tree<'a> {
                 self.at.unexpected("tool", wanted, format!("a link of this file ({})", names.join(", ")))
             });
         }
-        let leaves: Vec<&str> =
-            self.links.keys().copied().filter(|name| self.children(name).is_empty()).collect();
+        let leaves = self.links.keys().copied().filter(|name| self.children(name).is_empty());
+        // Frames of the base are moved by nothing; where nothing moves, each may be meant.
+        let moves = |link: &&str| {
+            self.path(link).is_ok_and(|path| path.iter().any(|joint| joint.kind.moves().is_some()))
+        };
+        let (moved, fixed): (Vec<&str>, Vec<&str>) = leaves.partition(moves);
+        let leaves = if moved.is_empty() { fixed } else { moved };
         match leaves[..] {
             [leaf] => Ok(leaf),
             _ => Err(ArmError::SeveralTools {
                 file: self.at.0.to_owned(),
                 tools: {
                     // That before the fingers of a gripper.
-                    let branch = Some(self.end(self.root)).filter(|end| *end != self.root);
+                    let branch = Some(self.end(self.root)).filter(|end| *end != self.root && moves(end));
                     branch.into_iter().chain(leaves).map(str::to_owned).collect()
                 },
             }),

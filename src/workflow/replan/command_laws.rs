@@ -296,12 +296,16 @@ fn no_command_breaks_a_limit_a_rule_of_the_controller_or_the_end_of_its_plan() {
     let of = |k: usize| {
         let seed = k as u64 + 1;
         let case = case(&fit, seed);
-        (broken(seed, &case), usize::from(case.command.applied()))
+        (broken(seed, &case), [case.command.applied(), case.command.step.is_some()].map(usize::from))
     };
-    let found: Vec<(Option<String>, usize)> = threads::numbered(usize::try_from(count()).unwrap(), of);
-    let corrected: usize = found.iter().map(|(_, corrected)| corrected).sum();
+    let found: Vec<(Option<String>, [usize; 2])> = threads::numbered(usize::try_from(count()).unwrap(), of);
+    let [corrected, smaller] = [0, 1].map(|k| found.iter().map(|(_, is)| is[k]).sum::<usize>());
     let broken: Vec<String> = found.into_iter().filter_map(|(broken, _)| broken).collect();
-    println!("{} commands, {corrected} of them no plain plan, {} break a law", count(), broken.len());
+    println!(
+        "{} commands, {corrected} of them no plain plan, {smaller} of a smaller step, {} break a law",
+        count(),
+        broken.len()
+    );
     assert!(broken.is_empty(), "{broken:#?}");
     assert!(corrected as u64 > count() / 2, "{corrected}");
 }

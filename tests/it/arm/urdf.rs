@@ -94,7 +94,15 @@ fn a_loop_beside_the_base_is_found() {
 #[test]
 fn several_possible_tools_are_named() {
     let found = read(SPATIAL, None).unwrap_err();
-    assert_eq!(found, "a.urdf: the tool could be any of link5, camera, tool; name one");
+    assert_eq!(
+        found,
+        "a.urdf: the tool could be any of link5, camera, tool; name one (in a task: tool = \"link5\")"
+    );
+    let framed = SPATIAL.replace(
+        "</robot>",
+        r#"<link name="frame"/><joint name="frame_joint" type="fixed"><parent link="base"/><child link="frame"/></joint></robot>"#,
+    );
+    assert_eq!(read(&framed, None).unwrap_err(), found, "a frame that nothing moves is no tool");
     assert_eq!(read(SPATIAL, Some("tool")).unwrap().joint_count(), 7);
     assert!(read(SPATIAL, Some("nose")).unwrap_err().contains("tool: found nose"));
     assert!(read(SPATIAL, Some("camera")).unwrap_err().contains("moving joint beside the path"));
@@ -117,7 +125,10 @@ fn the_fingers_of_a_gripper_are_held_and_an_arm_beside_is_refused() {
     let arm = joint("j1", "revolute", "base", "l1") + &joint("j2", "revolute", "l1", "hand");
     let fingers = joint("g1", "prismatic", "hand", "f1") + &joint("g2", "revolute", "hand", "f2");
     let text = format!(r#"<robot name="r">{links}{arm}{fingers}</robot>"#);
-    assert_eq!(read(&text, None).unwrap_err(), "a.urdf: the tool could be any of hand, f1, f2; name one");
+    assert_eq!(
+        read(&text, None).unwrap_err(),
+        "a.urdf: the tool could be any of hand, f1, f2; name one (in a task: tool = \"hand\")"
+    );
     let held = read(&text, Some("hand")).unwrap();
     let fixed = text.replace("prismatic", "fixed").replace(r#""g2" type="revolute""#, r#""g2" type="fixed""#);
     assert_eq!(held.joint_count(), 2);

@@ -107,7 +107,30 @@ fn a_task_that_no_timing_keeps_says_what_binds_where_and_by_how_much() {
     assert!(run.stdout.is_empty() && !log.exists());
     let said = stderr(&run);
     assert!(said.contains("J3 speed is 2.7") && said.contains("0.50 deg/s is allowed"), "{said}");
-    assert!(said.contains("longest duration allowed, 20 s (interval_s)"), "{said}");
+    let (_, longest) = said.split_once("longest duration allowed, 20 s (interval_s)").expect(&said);
+    let (_, enough) = longest.split_once(": with intervals up to ").expect(&said);
+    let enough_s: f64 = enough.split(' ').next().unwrap().parse().unwrap();
+    let text = std::fs::read_to_string(&slow).unwrap();
+    let wider = text.replace("[0.3, 20.0]", &format!("[0.3, {enough_s}]"));
+    assert_ne!(wider, text);
+    std::fs::write(&slow, wider).unwrap();
+    let kept = plan(&[slow.to_str().unwrap(), "--evaluations", "1000"], "2");
+    assert_eq!(kept.status.code(), Some(0), "{}", stderr(&kept));
+}
+
+#[test]
+fn a_plan_that_nothing_but_the_shortest_interval_holds_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = edited(folder.path(), SIMULATION, "[0.3, 20.0]", "[9.0, 20.0]");
+    let run = plan(&[long.to_str().unwrap(), "--choose", "fastest", "--evaluations", "1000"], "2");
+    let said = stdout(&run);
+    assert_eq!(run.status.code(), Some(3), "{said}");
+    assert!(
+        said.contains("nothing but the shortest interval that the task allows, 9 s (interval_s), keeps"),
+        "{said}"
+    );
+    let days = plan(&[SIMULATION, "--times", "0,1e9,2e9,3e9,4e9,5e9,6e9", "-o", "days.mcap"], "2");
+    assert!(stderr(&days).contains("has more than 10000000 samples"), "{}", stderr(&days));
 }
 
 #[test]
