@@ -8,6 +8,13 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use super::{Rules, motion::Motion};
 use crate::math::whole;
 
+/// A motion that repeats itself fits as well a period later. A peak whose correlation falls short of the best by less than this, with a
+/// valley of less than this share of it between, is one with the best: of these the machine needs the nearest, a lead counting so many
+/// times as a lag.
+const ALIKE: f64 = 0.05;
+const VALLEY: f64 = 0.5;
+const LEAD_COUNTS: f64 = 2.0;
+
 /// The lag of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Lag {
@@ -37,15 +44,16 @@ pub(super) fn lag(speeds: &Speeds, planned: &[Motion], sample_interval_s: f64, r
     let step_s = (1.0 / rules.lag_rate_hz).max(sample_interval_s);
     let shifts = whole((rules.lag_max_s / step_s).clamp(0.0, 1e4));
     let mut total = Correlation::zero(shifts);
-    let mut single_s = Vec::new();
-    for motion in planned {
-        let one = Correlation::around(speeds, motion, step_s, shifts);
-        single_s.extend(one.best(rules).and_then(|best| best.0).map(|shift| shift * step_s));
-        total.add(&one);
+    let singles: Vec<Correlation> =
+        planned.iter().map(|motion| Correlation::around(speeds, motion, step_s, shifts)).collect();
+    for one in &singles {
+        total.add(one);
     }
-    let Some((shift, correlation)) = total.best(rules) else {
+    let Some((shift, correlation)) = total.best(rules, None) else {
         return Lag::default();
     };
+    let single = |one: &Correlation| one.best(rules, shift)?.0;
+    let single_s: Vec<f64> = singles.iter().filter_map(single).map(|shift| shift * step_s).collect();
     let lag_s = shift.map(|shift| shift * step_s);
     let interval_s = lag_s.and_then(|lag_s| {
         let half_s = standard_error(&single_s)?;
@@ -90,14 +98,14 @@ impl Correlation {
     }
 
     /// The best shift in steps, refined by a parabola, and its correlation. No shift where the
-    /// best is at the end of the range or correlates too little; nothing where none correlates.
-    fn best(&self, rules: &Rules) -> Option<(Option<f64>, f64)> {
+    /// best is at the end of the range or correlates too little; nothing where none correlates. Of equals the one next to `near`.
+    fn best(&self, rules: &Rules, near: Option<f64>) -> Option<(Option<f64>, f64)> {
         let correlation = |k: usize| {
             let energy = (self.planned_energy[k] * self.measured_energy[k]).sqrt();
             if energy > 0.0 { self.product[k] / energy } else { 0.0 }
         };
         let all: Vec<f64> = (0..self.product.len()).map(correlation).collect();
-        let best = (0..all.len()).max_by(|&a, &b| all[a].total_cmp(&all[b]))?;
+        let best = nearest_alike(&all, (0..all.len()).max_by(|&a, &b| all[a].total_cmp(&all[b]))?, near);
         if !(all[best] > 0.0 && all[best].is_finite()) {
             return None;
         }
@@ -109,6 +117,24 @@ impl Correlation {
         let shifts = (self.product.len() / 2) as f64;
         Some((Some(best as f64 - shifts + beyond.clamp(-0.5, 0.5)), all[best].min(1.0)))
     }
+}
+
+/// The peak nearest to a shift, or to none, of those that fit as well as the best.
+fn nearest_alike(all: &[f64], best: usize, near: Option<f64>) -> usize {
+    let shift = |k: usize| k as f64 - (all.len() / 2) as f64;
+    let counts = |k: usize| match near {
+        Some(near) => (shift(k) - near).abs(),
+        None => shift(k).max(-LEAD_COUNTS * shift(k)),
+    };
+    let is_peak = |k: usize| {
+        let beside = [k.checked_sub(1), Some(k + 1)];
+        beside.into_iter().flatten().filter_map(|other| all.get(other)).all(|other| *other <= all[k])
+    };
+    let apart = |k: usize| all[k.min(best)..k.max(best)].iter().any(|one| *one < VALLEY * all[best]);
+    (0..all.len())
+        .filter(|&k| k == best || all[k] >= all[best] - ALIKE && is_peak(k) && apart(k))
+        .min_by(|&a, &b| counts(a).total_cmp(&counts(b)))
+        .unwrap_or(best)
 }
 
 /// Adds the products of the plan's samples with the measured ones at every shift. Shifts are taken side by side, each in
@@ -214,6 +240,22 @@ mod tests {
         assert!((found.shift_s.unwrap() - 0.133).abs() < 0.002, "{found:?}");
         assert!(found.correlation.unwrap() > 0.999);
         assert_eq!(found.interval_s, None);
+    }
+
+    #[test]
+    fn of_a_motion_that_repeats_itself_the_nearest_shift_is_the_lag() {
+        let t_s: Vec<f64> = (0..1500).map(|k| f64::from(k) * 0.01).collect();
+        for (period_s, late_s) in [(0.4, 0.06), (0.5, 0.3), (0.8, 0.03), (1.0, 0.03), (1.0, -0.1)] {
+            let speed = |t: f64| (std::f64::consts::TAU * t / period_s).sin() * (1.0 - 0.002 * t);
+            let planned: Vec<f64> = t_s.iter().map(|&t| speed(t)).collect();
+            let measured: Vec<f64> = t_s.iter().map(|&t| speed(t - late_s)).collect();
+            let speeds = Speeds { t_s: &t_s, planned_rad_s: &planned, measured_rad_s: &measured };
+            let half = |k: u32| f64::from(k) * 0.5 * period_s;
+            let motions: Vec<Motion> = (4..14).map(|k| motion(half(k), half(k + 1), 0..1500)).collect();
+            let found = lag(&speeds, &motions, 0.01, &Rules::default());
+            assert!((found.shift_s.unwrap() - late_s).abs() < 0.005, "{period_s} {late_s}: {found:?}");
+            assert!(found.interval_s.is_none_or(|[low, high]| high - low < 0.02), "{period_s}: {found:?}");
+        }
     }
 
     #[test]
