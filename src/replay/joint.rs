@@ -233,7 +233,7 @@ mod tests {
     #[test]
     fn a_joint_that_sags_on_its_way_left_before_it_goes_on() {
         let course =
-            |t: f64| 0.38 * ease(t - 5.5) - 0.14 * ease(2.0 * (t - 7.0)) + 0.76 * ease(0.5 * (t - 8.0));
+            |t: f64| 0.38 * ease((t - 4.4) / 2.4) - 0.14 * ease(2.0 * t - 14.0) + 0.76 * ease(0.5 * t - 4.0);
         let found = transitions(|t| ease((t - 5.0) / 3.0), course);
         assert!(matches!(&found[..], [one] if one.answer == Answer::Creeps), "{found:?}");
     }
