@@ -244,18 +244,13 @@ mod tests {
 
     #[test]
     fn of_a_motion_that_repeats_itself_the_nearest_shift_is_the_lag() {
-        let t_s: Vec<f64> = (0..1500).map(|k| f64::from(k) * 0.01).collect();
-        for (period_s, late_s) in [(0.4, 0.06), (0.5, 0.3), (0.8, 0.03), (1.0, 0.03), (1.0, -0.1)] {
-            let speed = |t: f64| (std::f64::consts::TAU * t / period_s).sin() * (1.0 - 0.002 * t);
-            let planned: Vec<f64> = t_s.iter().map(|&t| speed(t)).collect();
-            let measured: Vec<f64> = t_s.iter().map(|&t| speed(t - late_s)).collect();
-            let speeds = Speeds { t_s: &t_s, planned_rad_s: &planned, measured_rad_s: &measured };
-            let half = |k: u32| f64::from(k) * 0.5 * period_s;
-            let motions: Vec<Motion> = (4..14).map(|k| motion(half(k), half(k + 1), 0..1500)).collect();
-            let found = lag(&speeds, &motions, 0.01, &Rules::default());
-            assert!((found.shift_s.unwrap() - late_s).abs() < 0.005, "{period_s} {late_s}: {found:?}");
-            assert!(found.interval_s.is_none_or(|[low, high]| high - low < 0.02), "{period_s}: {found:?}");
-        }
+        // Peaks a period of a second apart, the one before the plan a little higher; and a shoulder, which is none.
+        let at = |k: i32, peak: i32, height: f64| (height - 2e-4 * f64::from((k - peak).pow(2))).max(-0.9);
+        let gait: Vec<f64> = (-100..=100).map(|k| at(k, -97, 0.95).max(at(k, 3, 0.948))).collect();
+        assert_eq!([nearest_alike(&gait, 3, None), nearest_alike(&gait, 3, Some(-90.0))], [103, 3]);
+        let shoulder: Vec<f64> =
+            (-100..=100).map(|k| at(k, 60, 0.95).max(at(k, 20, 0.93)).max(0.8)).collect();
+        assert_eq!(nearest_alike(&shoulder, 160, None), 160);
     }
 
     #[test]
