@@ -91,9 +91,9 @@ pub enum LogError {
     #[error(
         "the plan covers {:.2} to {:.2} s, the measurement {:.2} to {:.2} s: they have no time in common; {}",
         planned_s[0], planned_s[1], measured_s[0], measured_s[1],
-        if *by_receipt { "give a plan and a measurement of one run" } else { "if their clocks differ, try --time log" }
+        if *no_other_clock { "give a plan and a measurement of one run, with times that count from one instant" } else { "if their clocks differ, try --time log" }
     )]
-    NoOverlap { planned_s: [f64; 2], measured_s: [f64; 2], by_receipt: bool },
+    NoOverlap { planned_s: [f64; 2], measured_s: [f64; 2], no_other_clock: bool },
     #[error(
         "nothing of {topic} lies {range}: it spans {spans_s:.2} s; --from and --to count in seconds from the first \
          sample of the run, as the times of a report do"

@@ -72,7 +72,7 @@ impl AtRest {
 }
 
 /// The slope of a line, and its standard error; `None` of too few samples.
-fn slope(t_s: &[f64], position: &[f64]) -> Option<(f64, f64)> {
+pub(super) fn slope(t_s: &[f64], position: &[f64]) -> Option<(f64, f64)> {
     if t_s.len() < FEWEST {
         return None;
     }

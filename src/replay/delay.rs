@@ -143,7 +143,9 @@ pub(super) fn delay(
         return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     };
     let blind_s = blind_s(pair, signals, (planned, planned_s), (motion, onset.at_s));
-    if swings(signals, (planned, planned_s), motion) {
+    // One that turns before its plan leaves rest swings back from its last motion.
+    let turned = motion.reversal && !planned.reversal && motion.start_s + blind_s < planned_s;
+    if turned || swings(signals, (planned, planned_s), motion) {
         return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     }
     if motion.reversal {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Sizes;
+use super::{Sizes, at_rest::slope};
 use crate::{
     math::{half_interval, line},
     series::Pair,
@@ -13,7 +13,12 @@ const PART_S: f64 = 2.0;
 /// Fewest samples of a part.
 const FEWEST: usize = 8;
 
-/// Mean speed while the plan rests.
+/// What drifts is as fast in the second half of a part as in the first, within this share of the two together or so many standard
+/// errors; what settles or swings is not, and its part tells nothing.
+const STEADY: f64 = 0.5;
+const ERRORS: f64 = 2.0;
+
+/// Mean speed while the plan rests, beyond that of a plan that moves too slowly to be seen to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RestDrift {
@@ -46,8 +51,12 @@ pub(super) fn rest_drift(pair: &Pair, rest: &[bool]) -> Option<RestDrift> {
             let part = from..from + own.take_while(|(rests, t_s)| **rests && **t_s < until_s).count();
             from = part.end.max(from + 1);
             let lasts_s = pair.t_s[part.clone()].last().map_or(0.0, |last_s| last_s - pair.t_s[part.start]);
-            if lasts_s >= 0.5 * PART_S && part.len() >= FEWEST {
-                parts.push(vec![line(&pair.t_s[part.clone()], &pair.measured[part]).slope]);
+            let t_s = &pair.t_s[part.clone()];
+            if lasts_s >= 0.5 * PART_S && part.len() >= FEWEST && is_steady(t_s, &pair.measured[part.clone()])
+            {
+                let [came, asked] =
+                    [&pair.measured, &pair.planned].map(|x| line(t_s, &x[part.clone()]).slope);
+                parts.push(vec![came - asked]);
                 duration_s += lasts_s;
             }
         }
@@ -56,4 +65,44 @@ pub(super) fn rest_drift(pair: &Pair, rest: &[bool]) -> Option<RestDrift> {
     let half = half_interval(&parts);
     let interval = half.map(|half| [speed - half, speed + half]);
     (!parts.is_empty()).then_some(RestDrift { speed, interval, duration_s })
+}
+
+/// Whether a joint is as fast in both halves; so is one of too few samples to tell.
+fn is_steady(t_s: &[f64], position: &[f64]) -> bool {
+    let middle = t_s.len() / 2;
+    let halves = slope(&t_s[..middle], &position[..middle]).zip(slope(&t_s[middle..], &position[middle..]));
+    halves.is_none_or(|((first, first_error), (last, last_error))| {
+        (first - last).abs() <= (STEADY * (first + last).abs()).max(ERRORS * first_error.hypot(last_error))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        replay::{Rules, replay},
+        series::{Track, align},
+    };
+
+    /// What is told of a joint that goes so where its plan does.
+    fn drift(plan: impl Fn(f64) -> f64, course: impl Fn(f64) -> f64) -> Option<f64> {
+        let noise = |t: f64| 2e-5 * (1e3 * t * t).sin();
+        let pair = align(
+            &Track::sampled("lift", 12_000, plan),
+            &Track::sampled("lift", 12_000, |t| course(t) + noise(t)),
+        );
+        let rules = Rules::default();
+        let joint = replay(&[pair?], &rules).joints.into_iter().next()?;
+        joint.rest_drift.filter(|drift| drift.counts(rules.sizes(joint.kind))).map(|drift| drift.speed)
+    }
+
+    #[test]
+    fn a_load_that_sinks_drifts_and_slow_plans_and_tails_of_settling_do_not() {
+        let sinks = drift(|_| 0.5, |t| 0.5 - 1e-3 * t).unwrap();
+        assert!((sinks + 1e-3).abs() < 1e-5, "{sinks}");
+        let slow = |t: f64| 1e-3 * t.clamp(20.0, 90.0);
+        assert_eq!(drift(slow, |t| slow(t - 4.0)), None, "a slow plan");
+        let stairs = |t: f64| 0.1 * (t / 6.0).floor();
+        let settles = |t: f64| stairs(t) - 0.1 * (-(t % 6.0) / 0.5).exp();
+        assert_eq!(drift(stairs, settles), None, "tails of settling");
+    }
 }

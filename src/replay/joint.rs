@@ -145,6 +145,9 @@ fn answers(
     answers
 }
 
+/// A joint that covered a good part of the planned travel since it was asked to may sag by this share of that before it goes on.
+const SAGS: f64 = 0.5;
+
 /// Whether a joint covered a good part of the planned travel before an instant, and stands there: what starts then is no
 /// answer to the plan, which it followed without a start that was seen.
 fn followed_before(
@@ -162,11 +165,13 @@ fn followed_before(
         rules.follow_share * rise(&pair.planned[begins..ends.min(planned.segment.end)], planned.direction);
     let from = at(planned.start_s - rules.match_before_s);
     let until = at(at_s).clamp(from, planned.segment.end);
-    let measured = &signals.measured_rad[from..until];
     let along = |angle: f64| f64::from(planned.direction) * angle;
-    let reached = measured.last().map_or(0.0, |last| along(*last) - along(pair.planned[begins]));
+    let last = if from < until { signals.measured_rad.get(until - 1) } else { None };
+    let reached = last.map_or(0.0, |last| along(*last) - along(pair.planned[begins]));
     let needed = needed.max(signals.min_travel);
-    reached >= needed && rise(measured, planned.direction) >= needed
+    let rises = |from: usize| rise(&signals.measured_rad[from..until], planned.direction) >= needed;
+    reached >= needed && rises(from)
+        || reached >= (1.0 - SAGS) * needed && rises(at(planned.start_s).min(until))
 }
 
 /// Dynamic-to-static events; a measured stop belongs to the latest planned one that it could
@@ -206,4 +211,48 @@ fn stops(pair: &Pair, signals: &Signals, rules: &Rules) -> Vec<Stop> {
     let time_s = |stop: &Stop| stop.planned_s.or(stop.measured_s).unwrap_or(0.0);
     stops.sort_by(|a, b| time_s(a).total_cmp(&time_s(b)));
     stops
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        replay::{Answer, Rules, Transition, replay},
+        series::{Track, align},
+    };
+
+    fn ease(t: f64) -> f64 {
+        let x = t.clamp(0.0, 1.0);
+        x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+    }
+
+    fn transitions(plan: impl Fn(f64) -> f64, course: impl FnMut(f64) -> f64) -> Vec<Transition> {
+        let pair = align(&Track::sampled("z", 1500, plan), &Track::sampled("z", 1500, course));
+        replay(&[pair.unwrap()], &Rules::default()).transitions
+    }
+
+    #[test]
+    fn a_joint_that_sags_on_its_way_left_before_it_goes_on() {
+        let course =
+            |t: f64| 0.38 * ease((t - 4.4) / 2.4) - 0.14 * ease(2.0 * t - 14.0) + 0.76 * ease(0.5 * t - 4.0);
+        let found = transitions(|t| ease((t - 5.0) / 3.0), course);
+        assert!(matches!(&found[..], [one] if one.answer == Answer::Creeps), "{found:?}");
+    }
+
+    #[test]
+    fn a_joint_that_swings_back_has_not_left_before_its_plan() {
+        for again_s in [3.0, 3.1, 3.2, 3.3, 3.4] {
+            let plan = |t: f64| 0.3 * ease(2.0 * (t - 2.0)) - 0.3 * ease(t - again_s);
+            let (mut q, mut speed) = (0.0, 0.0);
+            let swings = |t: f64| {
+                for _ in 0..10 {
+                    speed += 1e-3 * (25.0 * (plan(t - 0.13) - q) - 1.5 * speed);
+                    q += 1e-3 * speed;
+                }
+                q
+            };
+            let found = transitions(plan, swings);
+            let early = |one: &&Transition| one.onset_delay_s.is_some_and(|delay_s| delay_s < -0.03);
+            assert_eq!(found.iter().find(early), None, "{again_s}");
+        }
+    }
 }

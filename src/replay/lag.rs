@@ -8,6 +8,13 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use super::{Rules, motion::Motion};
 use crate::math::whole;
 
+/// A motion that repeats itself fits as well a period later. A peak whose correlation falls short of the best by less than this, with a
+/// valley of less than this share of it between, is one with the best: of these the machine needs the nearest, a lead counting so many
+/// times as a lag.
+const ALIKE: f64 = 0.05;
+const VALLEY: f64 = 0.5;
+const LEAD_COUNTS: f64 = 2.0;
+
 /// The lag of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Lag {
@@ -37,15 +44,16 @@ pub(super) fn lag(speeds: &Speeds, planned: &[Motion], sample_interval_s: f64, r
     let step_s = (1.0 / rules.lag_rate_hz).max(sample_interval_s);
     let shifts = whole((rules.lag_max_s / step_s).clamp(0.0, 1e4));
     let mut total = Correlation::zero(shifts);
-    let mut single_s = Vec::new();
-    for motion in planned {
-        let one = Correlation::around(speeds, motion, step_s, shifts);
-        single_s.extend(one.best(rules).and_then(|best| best.0).map(|shift| shift * step_s));
-        total.add(&one);
+    let singles: Vec<Correlation> =
+        planned.iter().map(|motion| Correlation::around(speeds, motion, step_s, shifts)).collect();
+    for one in &singles {
+        total.add(one);
     }
-    let Some((shift, correlation)) = total.best(rules) else {
+    let Some((shift, correlation)) = total.best(rules, None) else {
         return Lag::default();
     };
+    let single = |one: &Correlation| one.best(rules, shift)?.0;
+    let single_s: Vec<f64> = singles.iter().filter_map(single).map(|shift| shift * step_s).collect();
     let lag_s = shift.map(|shift| shift * step_s);
     let interval_s = lag_s.and_then(|lag_s| {
         let half_s = standard_error(&single_s)?;
@@ -90,14 +98,14 @@ impl Correlation {
     }
 
     /// The best shift in steps, refined by a parabola, and its correlation. No shift where the
-    /// best is at the end of the range or correlates too little; nothing where none correlates.
-    fn best(&self, rules: &Rules) -> Option<(Option<f64>, f64)> {
+    /// best is at the end of the range or correlates too little; nothing where none correlates. Of equals the one next to `near`.
+    fn best(&self, rules: &Rules, near: Option<f64>) -> Option<(Option<f64>, f64)> {
         let correlation = |k: usize| {
             let energy = (self.planned_energy[k] * self.measured_energy[k]).sqrt();
             if energy > 0.0 { self.product[k] / energy } else { 0.0 }
         };
         let all: Vec<f64> = (0..self.product.len()).map(correlation).collect();
-        let best = (0..all.len()).max_by(|&a, &b| all[a].total_cmp(&all[b]))?;
+        let best = nearest_alike(&all, (0..all.len()).max_by(|&a, &b| all[a].total_cmp(&all[b]))?, near);
         if !(all[best] > 0.0 && all[best].is_finite()) {
             return None;
         }
@@ -109,6 +117,24 @@ impl Correlation {
         let shifts = (self.product.len() / 2) as f64;
         Some((Some(best as f64 - shifts + beyond.clamp(-0.5, 0.5)), all[best].min(1.0)))
     }
+}
+
+/// The peak nearest to a shift, or to none, of those that fit as well as the best.
+fn nearest_alike(all: &[f64], best: usize, near: Option<f64>) -> usize {
+    let shift = |k: usize| k as f64 - (all.len() / 2) as f64;
+    let counts = |k: usize| match near {
+        Some(near) => (shift(k) - near).abs(),
+        None => shift(k).max(-LEAD_COUNTS * shift(k)),
+    };
+    let is_peak = |k: usize| {
+        let beside = [k.checked_sub(1), Some(k + 1)];
+        beside.into_iter().flatten().filter_map(|other| all.get(other)).all(|other| *other <= all[k])
+    };
+    let apart = |k: usize| all[k.min(best)..k.max(best)].iter().any(|one| *one < VALLEY * all[best]);
+    (0..all.len())
+        .filter(|&k| k == best || all[k] >= all[best] - ALIKE && is_peak(k) && apart(k))
+        .min_by(|&a, &b| counts(a).total_cmp(&counts(b)))
+        .unwrap_or(best)
 }
 
 /// Adds the products of the plan's samples with the measured ones at every shift. Shifts are taken side by side, each in
@@ -214,6 +240,17 @@ mod tests {
         assert!((found.shift_s.unwrap() - 0.133).abs() < 0.002, "{found:?}");
         assert!(found.correlation.unwrap() > 0.999);
         assert_eq!(found.interval_s, None);
+    }
+
+    #[test]
+    fn of_a_motion_that_repeats_itself_the_nearest_shift_is_the_lag() {
+        // Peaks a period of a second apart, the one before the plan a little higher; and a shoulder, which is none.
+        let at = |k: i32, peak: i32, height: f64| (height - 2e-4 * f64::from((k - peak).pow(2))).max(-0.9);
+        let gait: Vec<f64> = (-100..=100).map(|k| at(k, -97, 0.95).max(at(k, 3, 0.948))).collect();
+        assert_eq!([nearest_alike(&gait, 3, None), nearest_alike(&gait, 3, Some(-90.0))], [103, 3]);
+        let shoulder: Vec<f64> =
+            (-100..=100).map(|k| at(k, 60, 0.95).max(at(k, 20, 0.93)).max(0.8)).collect();
+        assert_eq!(nearest_alike(&shoulder, 160, None), 160);
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! Columns of a joint that are named by what they mean.
 
+use std::collections::BTreeMap;
+
 use super::{
+    Columns, Quantity, Role,
     label::Label,
     word::{Meaning, words},
 };
@@ -8,6 +11,18 @@ use super::{
 /// Words for the plan less the measurement.
 const ERRORS: [&str; 8] =
     ["error", "err", "deviation", "abweichung", "schleppfehler", "schleppabstand", "erreur", "误差"];
+
+/// What a caller names as the side of a joint that a word means.
+pub(super) fn named_as<'a>(
+    name: &str,
+    joint: &str,
+    given: &'a BTreeMap<(Role, Quantity), Columns>,
+) -> Option<&'a str> {
+    let [word] = words(name).try_into().ok()?;
+    let Meaning::Role(role) = word.meaning else { return None };
+    let own = given.get(&(role, Quantity::Position))?.iter().find(|(other, _)| other == joint)?;
+    Some(&own.1)
+}
 
 /// The only column of a joint that is `measured`, `planned`, `command` or `error`.
 pub(super) fn by_meaning(name: &str, joint: &str, labels: &[Label]) -> Option<usize> {

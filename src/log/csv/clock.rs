@@ -13,6 +13,7 @@ use super::{
     number::{nanoseconds, number},
     order::doubt,
     rows::Rows,
+    si::{FARTHEST_DEG, FARTHEST_RAD},
     time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
     unit::{ARCHIVE_DAY, Measure, parse_unit},
 };
@@ -311,9 +312,28 @@ impl Look<'_> {
         };
         let time = columns.clone().find(rises);
         let first = time.map_or("--rate HZ".to_owned(), |column| format!("--time '#{}'", column + 1));
-        let others = columns.filter(|column| Some(*column) != time).map(|column| column + 1);
-        let sides = ["--planned", "--measured"].into_iter().zip(others);
-        std::iter::once(first).chain(sides.map(|(side, column)| format!("{side} 'J1=#{column}'"))).collect()
+        let sides: Vec<_> = ["--planned", "--measured"]
+            .into_iter()
+            .zip(columns.filter(|column| Some(*column) != time))
+            .collect();
+        let reach = sides.iter().map(|(_, column)| self.reach(text, *column)).fold(0.0, f64::max);
+        let turns = self.options.angle_unit.is_none() && self.options.slides.is_empty();
+        let degrees =
+            (turns && (FARTHEST_RAD..=FARTHEST_DEG).contains(&reach)).then(|| "--degrees".to_owned());
+        let sides = sides.into_iter().map(|(side, column)| format!("{side} 'J1=#{}'", column + 1));
+        std::iter::once(first).chain(sides).chain(degrees).collect()
+    }
+
+    /// The largest magnitude in a column, of all rows.
+    fn reach(&self, text: &[u8], column: usize) -> f64 {
+        let mut rows = Rows::new(text, self.dialect.separator);
+        let (mut record, mut reach) = (ByteRecord::new(), 0.0_f64);
+        while rows.next(&mut record).is_some() {
+            let cell = record.get(column).unwrap_or_default();
+            let value = number(cell, self.dialect.decimal_comma).filter(|value| value.is_finite());
+            reach = reach.max(value.map_or(0.0, f64::abs));
+        }
+        reach
     }
 
     /// A column that rises from row to row.

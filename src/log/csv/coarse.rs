@@ -20,8 +20,9 @@ impl Look<'_> {
         }
         let [ns, _] = self.both(text, [&found.source; 2]);
         let Some((rows, step_ns)) = rows_each(&ns) else { return found };
+        let unit = found.doubt.as_ref().map_or(String::new(), |doubt| format!("{doubt}; it "));
         let doubt = format!(
-            "repeats each stamp in {rows} rows: they are spread evenly over the {} s to the next",
+            "{unit}repeats each stamp in {rows} rows: they are spread evenly over the {} s to the next",
             step_ns as f64 / NS_PER_S
         );
         Found {

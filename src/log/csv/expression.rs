@@ -2,7 +2,7 @@
 
 use super::{
     CsvError, CsvOptions,
-    by_meaning::by_meaning,
+    by_meaning::{by_meaning, named_as},
     column::find,
     head::Head,
     label::Label,
@@ -29,6 +29,7 @@ pub(super) fn derive(
 ) -> Result<Vec<Derived>, CsvError> {
     let mut all = Vec::new();
     let width = labels.len();
+    let given = options.columns.clone();
     for ((role, quantity), columns) in &mut options.columns {
         for (joint, text) in columns {
             let flag = option(*role, *quantity);
@@ -42,9 +43,11 @@ pub(super) fn derive(
                 match part {
                     Part::Constant(value) => derived.constant += value,
                     Part::Column(factor, name) => {
-                        let near = || by_meaning(name, joint, &labels[..width]);
-                        let found = find(name, flag, &head.names[..width]);
-                        derived.terms.push((factor, found.or_else(|error| near().ok_or(error))?));
+                        let names = &head.names[..width];
+                        let named = || find(named_as(name, joint, &given)?, flag, names).ok();
+                        let near = || named().or_else(|| by_meaning(name, joint, &labels[..width]));
+                        let found = find(name, flag, names).or_else(|error| near().ok_or(error))?;
+                        derived.terms.push((factor, found));
                     }
                 }
             }
@@ -124,7 +127,10 @@ fn term(text: &str, sign: f64) -> Option<Part<'_>> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{
+        super::{AngleUnit, Quantity, Role, read_csv_bytes},
+        *,
+    };
 
     #[test]
     fn a_sum_is_split_at_its_signs_and_a_name_is_none() {
@@ -137,5 +143,18 @@ mod tests {
         assert_eq!(split("-#3"), Some(vec![column(-1.0, "#3")]));
         assert_eq!(split("#3/1000"), Some(vec![column(1e-3, "#3")]));
         assert_eq!((split("boom"), split("3.5"), split("2*3"), split("")), (None, None, None, None));
+    }
+
+    #[test]
+    fn what_an_option_names_as_measured_is_the_measured_of_a_sum() {
+        let column = |role, text: &str| ((role, Quantity::Position), vec![("J".into(), text.into())]);
+        let options = CsvOptions {
+            columns: [column(Role::Planned, "measured+Error"), column(Role::Measured, "Output")].into(),
+            angle_unit: Some(AngleUnit::Degrees),
+            ..CsvOptions::default()
+        };
+        let rows: String = (0..20).map(|k| format!("{:.2},{k},1\n", 0.02 * f64::from(k))).collect();
+        let run = read_csv_bytes("a.csv", format!("t,Output,Error\n{rows}").as_bytes(), &options).unwrap();
+        assert_eq!(run.understood.columns.len(), 2, "{:?}", run.understood);
     }
 }

@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 
 use super::{
-    CsvError, CsvOptions, Quantity, Role,
+    CsvError, CsvOptions, Quantity, Role, Separator,
     by_meaning::plan_by_error,
     column::{find, present},
     head::Head,
     label::{Label, PLACE, QUATERNION, is_place, label},
-    number::number,
     offered::offered,
     pairing::{Draft, Partners, by_last_part, numbered_apart, plan_beside_measured, without_shared_words},
+    repeats::drop_repeats,
     unit::{Measure, Unit},
 };
 use crate::{
@@ -71,6 +71,7 @@ pub(super) fn describe(role: Role, quantity: Quantity) -> String {
 }
 
 pub(super) fn lay_out(
+    (text, separator): (&[u8], Separator),
     head: &Head,
     labels: &[Label],
     taken: &[usize],
@@ -112,7 +113,7 @@ pub(super) fn lay_out(
     }
     without_orientation(head, &mut drafts, remarks)?;
     plan_beside_measured(head, &mut drafts, remarks);
-    drop_repeats(head, labels, &mut drafts, remarks)?;
+    drop_repeats((text, separator), head, labels, &mut drafts, remarks)?;
     without_shared_words(&mut drafts);
     by_last_part(&mut drafts, remarks);
     let joints = joints(head, labels, &drafts, remarks)?;
@@ -231,82 +232,6 @@ fn measures(label: &Label, measure: Measure) -> bool {
 /// The unit of a column that would be a joint's, if one knew what one of it is.
 fn odd(label: &Label) -> Option<Unit> {
     label.stated.filter(|unit| unit.is_odd() && label.role.is_some())
-}
-
-/// Words that say plan or measurement where nothing else does.
-const SECOND: [&str; 6] = ["estimate", "pfb", "fdb", "pcmd", "req", "dmd"];
-
-/// Two columns for one thing are an error, unless they say the same, or one says so by a word of these.
-fn drop_repeats(
-    head: &Head,
-    labels: &[Label],
-    drafts: &mut Vec<Draft>,
-    remarks: &mut Remarks,
-) -> Result<(), CsvError> {
-    let mut kept: Vec<Draft> = Vec::new();
-    for draft in drafts.drain(..) {
-        let same = |other: &&Draft| {
-            other.key == draft.key && other.role == draft.role && other.quantity == draft.quantity
-        };
-        let Some(first) = kept.iter().find(same) else {
-            kept.push(draft);
-            continue;
-        };
-        // What an observer makes of a measurement, or one drive calls a command, gives way to what says so.
-        let weak = |column: usize| labels[column].words.iter().any(|word| SECOND.contains(&word.as_str()));
-        let [before, now] = [first.column, draft.column].map(weak);
-        if before != now {
-            let [used, left] =
-                if before { [draft.column, first.column] } else { [first.column, draft.column] };
-            let message = format!(
-                "column {:?} says the same of a joint as {:?}, and was not used",
-                head.names[left], head.names[used]
-            );
-            remarks.add(Code::Ambiguous, 1, message);
-            if before {
-                kept.retain(|other| !same(&other));
-                kept.push(draft);
-            }
-            continue;
-        }
-        let differs = |row: &Vec<Vec<u8>>| row.get(first.column) != row.get(draft.column);
-        if head.sample.iter().any(differs) && !in_another_unit(head, labels, [first.column, draft.column]) {
-            let shown = |column: usize| format!("{:?} (#{})", head.names[column], column + 1);
-            return Err(CsvError::Twice {
-                columns: format!("{} and {}", shown(first.column), shown(draft.column)),
-                what: describe(draft.role, draft.quantity),
-                joint: draft.joint,
-                option: option(draft.role, draft.quantity),
-            });
-        }
-        let message = format!(
-            "column {:?} (#{}) repeats #{} and was not used",
-            head.names[draft.column],
-            draft.column + 1,
-            first.column + 1
-        );
-        remarks.add(Code::Ambiguous, 1, message);
-    }
-    *drafts = kept;
-    Ok(())
-}
-
-/// Whether two columns say the same in two units: `q1_rad` and `q1_deg`.
-fn in_another_unit(head: &Head, labels: &[Label], columns: [usize; 2]) -> bool {
-    const ROUNDED: f64 = 0.002;
-    let [Some(one), Some(other)] = columns.map(|column| labels[column].unit) else { return false };
-    let read = |row: &Vec<Vec<u8>>, column: usize, unit: Unit| {
-        let cell = row.get(column)?;
-        let value = number(cell, false).or_else(|| number(cell, true))?;
-        Some(value * unit.factor)
-    };
-    let both = |row: &Vec<Vec<u8>>| Some([read(row, columns[0], one)?, read(row, columns[1], other)?]);
-    let pairs: Vec<[f64; 2]> = head.sample.iter().filter_map(both).collect();
-    let most = pairs.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
-    one.measure == other.measure
-        && one != other
-        && pairs.iter().any(|[a, _]| a.to_bits() != pairs[0][0].to_bits())
-        && pairs.iter().all(|[a, b]| (a - b).abs() <= ROUNDED * most)
 }
 
 /// Key and name of the joints that have plan and measurement; all of one side if the file has no other.

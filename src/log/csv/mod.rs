@@ -51,6 +51,7 @@ mod order;
 mod pairing;
 mod printed;
 mod read;
+mod repeats;
 mod restarts;
 mod rows;
 mod run;
@@ -64,6 +65,7 @@ mod stamp;
 mod stream;
 mod text;
 mod time;
+mod too_fast;
 mod typed;
 mod understood;
 mod unit;
@@ -91,7 +93,10 @@ pub use understood::{ColumnRead, TimeRead, Understood};
 use std::borrow::Cow;
 
 use super::write::Role;
-use crate::{remark::Remarks, series::JointKind};
+use crate::{
+    remark::{Code, Remarks},
+    series::JointKind,
+};
 use unit::Measure;
 
 /// The quantity of a joint that a column holds.
@@ -194,7 +199,19 @@ fn read_table(
     let text = judged::without_bad(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
     let text = unpadded::padded(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
     let (text, form, _) = in_one_form(name, text, options, &mut remarks);
-    let (run, _) = Form::of(name, &text, &form, &mut remarks)?.read(name, &text, remarks)?;
+    let before = remarks.clone();
+    let read = Form::of(name, &text, &form, &mut remarks)?;
+    let guess = read.guessed_ms();
+    let (run, _) = read.read(name, &text, remarks)?;
+    let run = match guess.and_then(|column| too_fast::in_seconds(&run, &column)) {
+        Some(doubt) => {
+            let mut remarks = before;
+            remarks.add(Code::Guessed, 1, doubt);
+            let form = CsvOptions { time_unit: Some("s".to_owned()), ..form };
+            Form::of(name, &text, &form, &mut remarks)?.read(name, &text, remarks)?.0
+        }
+        None => run,
+    };
     Ok(run.given(options.given()))
 }
 
@@ -270,20 +287,29 @@ impl Form {
         let mut options = CsvOptions { as_plan: options.as_plan || by_name, ..options.clone() };
         let derived = expression::derive(&mut head, &mut labels, &mut options)?;
         let time = clock::choose(text, &head, &labels, dialect, &options, remarks)?;
-        let layout = layout::lay_out(&head, &labels, &time.columns(), &options, remarks)?;
+        let layout =
+            layout::lay_out((text, dialect.separator), &head, &labels, &time.columns(), &options, remarks)?;
         let silent = |one: &&layout::Use| one.role == Role::Planned && labels[one.column].role.is_none();
         if let Some(one) = layout.uses.iter().find(silent).filter(|_| by_name && options.columns.is_empty()) {
             let message = format!(
                 "columns such as {:?}, taken as the plan because the file is called so; else say --measured JOINT=COLUMN,...",
                 head.names[one.column]
             );
-            remarks.add(
-                crate::remark::Code::Guessed,
-                layout.uses.iter().filter(silent).count() as u64,
-                message,
-            );
+            remarks.add(Code::Guessed, layout.uses.iter().filter(silent).count() as u64, message);
         }
         Ok(Self { dialect, head, labels, derived, time, layout, options })
+    }
+
+    /// The column of a time that is taken as ms and says nowhere so.
+    fn guessed_ms(&self) -> Option<String> {
+        let time = if let time::TimeSource::Spread { whole, .. } = &self.time { whole } else { &self.time };
+        let time::TimeSource::Number { column, unit } = time else { return None };
+        let says =
+            |row: &Vec<Vec<u8>>| row.get(*column).is_some_and(|cell| time::with_unit(cell).1.is_some());
+        let stated = self.options.time_unit.is_some()
+            || self.labels[*column].stated.is_some()
+            || self.head.sample.iter().any(says);
+        (unit.name == "ms" && !stated).then(|| self.head.names[*column].clone())
     }
 
     /// Columns that sums are made of.
@@ -323,7 +349,6 @@ impl Form {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::remark::Code;
 
     fn read(text: &str) -> Result<CsvRun, CsvError> {
         read_csv_bytes("a.csv", text.as_bytes(), &CsvOptions::default())
@@ -350,7 +375,7 @@ mod tests {
         let text =
             table("", 900, |k| format!("{},{},{}", 900 - k.abs_diff(800), k % 7, 0.001 * f64::from(k)));
         let error = read(text.trim_start()).unwrap_err().to_string();
-        assert!(error.contains("--time '#3' --planned 'J1=#1'"), "{error}");
+        assert!(error.contains("--time '#3' --planned 'J1=#1' --measured 'J1=#2' --degrees"), "{error}");
     }
 
     #[test]

@@ -185,12 +185,17 @@ impl CsvRun {
         self.cells = cells;
     }
 
+    /// When each row was, ns.
+    pub(super) fn stamp_ns(&self) -> &[i64] {
+        &self.cells.stamp_ns
+    }
+
     fn column(&self, column: usize) -> Option<&[f64]> {
         self.cells.columns.get(&column).map(|column| column.values.as_slice())
     }
 
     /// Columns of a role and quantity, `[joints]`; `None` if no joint has one.
-    fn by_joint(&self, role: Role, quantity: Quantity) -> Option<ByJoint<'_>> {
+    pub(super) fn by_joint(&self, role: Role, quantity: Quantity) -> Option<ByJoint<'_>> {
         let of = |joint: usize| {
             let fits = |one: &&super::layout::Use| {
                 one.role == role && one.quantity == quantity && one.joint == joint

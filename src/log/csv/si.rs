@@ -23,9 +23,9 @@ pub(super) struct Settled {
 }
 
 /// Joints with end stops stay within one and a half turns to either side, rad.
-const FARTHEST_RAD: f64 = 3.0 * std::f64::consts::PI;
+pub(super) const FARTHEST_RAD: f64 = 3.0 * std::f64::consts::PI;
 /// Joints of arms turn no farther; a number above is of other steps, deg.
-const FARTHEST_DEG: f64 = 1080.0;
+pub(super) const FARTHEST_DEG: f64 = 1080.0;
 
 /// Converts the columns in use; also how each joint moves, `[joints]`.
 pub(super) fn to_si(

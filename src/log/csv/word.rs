@@ -102,6 +102,13 @@ pub(super) fn words(header: &str) -> Vec<Word<'_>> {
         }
         slashed = piece.ends_with('/');
     }
+    // What a drive makes of its goal; a `profile_velocity` is a limit.
+    for at in 1..words.len() {
+        let position = words[at].meaning == Meaning::Quantity(Quantity::Position);
+        if position && words[at - 1].text.eq_ignore_ascii_case("profile") {
+            words[at - 1].meaning = Meaning::Role(Role::Planned);
+        }
+    }
     words
 }
 
@@ -204,5 +211,7 @@ mod tests {
     fn a_word_that_only_contains_a_known_one_is_a_name() {
         assert_eq!(words("offset")[0].meaning, Meaning::Name);
         assert_eq!(words("Exact")[0].meaning, Meaning::Name);
+        assert_eq!(words("profile_velocity")[0].meaning, Meaning::Name);
+        assert_eq!(words("profile_position_deg")[0].meaning, Meaning::Role(Role::Planned));
     }
 }

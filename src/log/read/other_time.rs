@@ -31,6 +31,12 @@ const STEPS_S: [f64; 2] = [0.25, 0.01];
 const PLAN_STEP_S: f64 = 0.02;
 const MOST_STEPS: f64 = 1e6;
 
+/// A motion that repeats itself fits as well a period later: a shift that leaves so much more of the motion, and with shifts between that
+/// leave more than this share of it, is as good as the best, and the smallest of these is told, a lead counting so many times as a lag.
+const ALIKE: f64 = 0.1;
+const BETWEEN: f64 = 0.5;
+const LEAD_COUNTS: f64 = 2.0;
+
 /// Shifts between these are what machines do, s.
 const USUAL_S: [f64; 2] = [-0.1, 1.0];
 
@@ -302,21 +308,35 @@ fn shift_s(joints: &[Both]) -> f64 {
         Some(steps) => steps.at(t_s),
         None => joints[joint].planned.held_at(t_s).position,
     };
+    let at = |shift_s: f64| (apart(joints, |joint, t_s| plan(joint, t_s - shift_s)), shift_s);
     let mut best = (f64::INFINITY, 0.0);
     let mut reach_s = WIDEST_S;
     for step_s in STEPS_S {
-        let middle_s = best.1;
-        let mut shift_s = middle_s - reach_s;
-        while shift_s <= middle_s + reach_s {
-            let apart = apart(joints, |joint, t_s| plan(joint, t_s - shift_s));
-            if apart < best.0 {
-                best = (apart, shift_s);
-            }
-            shift_s += step_s;
-        }
+        let tried = tried_s(best.1 - reach_s, best.1 + reach_s, step_s).map(at);
+        best = tried.fold(best, |best, one| if one.0 < best.0 { one } else { best });
         reach_s = step_s;
     }
-    best.1
+    let (left, best_s) = best;
+    if (USUAL_S[0]..=STEPS_S[0]).contains(&best_s) {
+        return best_s;
+    }
+    let tried: Vec<(f64, f64)> =
+        tried_s(-best_s.abs(), LEAD_COUNTS * best_s.abs(), STEPS_S[1]).map(at).collect();
+    let ridge = |shift_s: f64| {
+        let between = tried.iter().filter(|(_, s)| (s - shift_s) * (s - best_s) < 0.0);
+        between.map(|(left, _)| *left).fold(0.0, f64::max) > left + BETWEEN
+    };
+    let valleys = tried.windows(3).filter(|w| w[1].0 <= w[0].0 && w[1].0 <= w[2].0).map(|w| w[1]);
+    let alike = valleys.filter(|(also, shift_s)| *also <= left + ALIKE && ridge(*shift_s));
+    let counts = |shift_s: f64| shift_s.max(-LEAD_COUNTS * shift_s);
+    let found = alike.map(|(_, shift_s)| shift_s).chain([best_s]);
+    found.min_by(|a, b| counts(*a).total_cmp(&counts(*b))).unwrap_or(best_s)
+}
+
+/// Shifts from one to another in steps, s.
+fn tried_s(from_s: f64, to_s: f64, step_s: f64) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(from_s), move |shift_s| Some(shift_s + step_s))
+        .take_while(move |shift_s| *shift_s <= to_s)
 }
 
 /// Of a delay and a lag that are so late together the pair that leaves least: what that is, and the delay, s. No lag is told from a plan
@@ -328,7 +348,8 @@ fn lagged(joints: &[Both], shift_s: f64) -> (f64, f64) {
         return (left, shift_s);
     };
     let pair = |(filters, tenths): (u32, u32)| {
-        let lag_s = (0.1 * f64::from(tenths) * shift_s).max(0.0);
+        // No zero below zero: a lag of that is no number.
+        let lag_s = if shift_s > 0.0 { 0.1 * f64::from(tenths) * shift_s } else { 0.0 };
         let delay_s = shift_s - lag_s;
         let plans: Vec<Steps> =
             steps.iter().map(|steps| steps.lagged(filters, lag_s / f64::from(filters))).collect();

@@ -10,6 +10,9 @@ use crate::{
 /// Motion in half a second with which a joint stands: rad, and m.
 const STANDS: [f64; 2] = [0.15 * DEGREE_RAD, 0.002];
 const STEP_S: f64 = 0.5;
+/// What swings is back after its period: four fifths of its samples meanwhile lie within so many times that of a joint that stands.
+const SWINGS: f64 = 2.0;
+const MIDDLE: [f64; 2] = [0.1, 0.9];
 
 /// Motion of machine and plan that is worth a remark: rad, and m.
 const MOVES: [f64; 2] = [3.0 * DEGREE_RAD, 0.03];
@@ -119,7 +122,10 @@ fn standing(joints: &[(&Track, &Track)], [first_s, last_s]: [f64; 2]) -> Vec<[f6
             continue;
         }
         let now = places(next_s);
-        let moved = |k: usize| (now[k] - before[k]).abs() > least(joints[k].1.kind(), STANDS);
+        let moved = |k: usize| {
+            let stands = least(joints[k].1.kind(), STANDS);
+            (now[k] - before[k]).abs() > stands || swing(joints[k].1, [at_s, next_s]) > SWINGS * stands
+        };
         if next_s < at_s + 2.0 * STEP_S && !(0..joints.len()).any(moved) {
             match found.last_mut().filter(|[_, to_s]| *to_s >= at_s) {
                 Some(last) => last[1] = next_s,
@@ -159,11 +165,21 @@ fn apart(joints: &[(&Track, &Track)], [from_s, to_s]: [f64; 2], late_s: f64) -> 
 }
 
 /// Between lowest and highest position in a span of time.
-fn travel(track: &Track, [from_s, to_s]: [f64; 2]) -> f64 {
-    let at = |t_s: f64| track.t_s().partition_point(|t| *t < t_s);
-    let [lowest, highest] =
-        crate::math::range(track.position().get(at(from_s)..at(to_s)).unwrap_or_default().iter().copied());
+fn travel(track: &Track, span_s: [f64; 2]) -> f64 {
+    let [lowest, highest] = crate::math::range(within(track, span_s).iter().copied());
     (highest - lowest).max(0.0)
+}
+
+/// The same but for the outermost of its samples, which may be noise.
+fn swing(track: &Track, span_s: [f64; 2]) -> f64 {
+    let [low, high] = MIDDLE.map(|share| quantile(within(track, span_s).to_vec(), share));
+    high - low
+}
+
+/// Positions in a span of time.
+fn within(track: &Track, span_s: [f64; 2]) -> &[f64] {
+    let [from, to] = span_s.map(|span_s| track.t_s().partition_point(|t_s| *t_s < span_s));
+    track.position().get(from..to).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -213,5 +229,15 @@ mod tests {
         assert!(matches!(&paused[..], [one] if one.contains(" until 7.")), "{paused:?}");
         assert_eq!(said(0.0, 30.0), Vec::<String>::new(), "it never moved");
         assert_eq!(of_course(30.0, |t| t.min(10.0) - 3.0), Vec::<String>::new(), "it was late before");
+    }
+
+    #[test]
+    fn a_joint_that_swings_twice_a_second_does_not_stand() {
+        let swing = |late_s: f64| {
+            Series::sampled("knee", 800, |t| 0.35 * (std::f64::consts::TAU * 2.0 * (t - late_s)).sin())
+        };
+        let found: Vec<String> =
+            stops(&swing(0.0), &swing(0.03)).into_iter().map(|stop| stop.message).collect();
+        assert_eq!(found, Vec::<String>::new());
     }
 }

@@ -18,7 +18,7 @@ use crate::{
         metric::position,
         next::as_one,
     },
-    replay::{Replay, Transition},
+    replay::{JointReplay, Replay, Transition},
     workflow::report::{
         Report,
         advice::{Advice, advice},
@@ -119,9 +119,11 @@ fn latest(replay: &Replay, usual_s: f64) -> String {
 /// Joints of which only one moves, itself or its plan, and those that do not rest with it.
 fn astray(report: &Report) -> Option<Fact> {
     let replay = &report.replay;
-    let astray = replay.joints.iter().filter(|joint| joint.plan_moves != joint.moves);
-    let astray = astray.filter_map(|joint| stray(report, joint));
-    let resting = replay.joints.iter().flat_map(|joint| at_rest(replay, joint));
+    let said =
+        |joint: &JointReplay| if joint.plan_moves == joint.moves { None } else { stray(report, joint) };
+    let astray = replay.joints.iter().filter_map(said);
+    let others = replay.joints.iter().filter(|joint| said(joint).is_none());
+    let resting = others.flat_map(|joint| at_rest(replay, joint));
     let found: Vec<String> = astray.chain(resting).collect();
     let more = match found.len() {
         0 | 1 => String::new(),

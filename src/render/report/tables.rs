@@ -81,6 +81,9 @@ fn findings(report: &Report) -> Vec<String> {
     let mut lines = Vec::new();
     match replay.worst_first().first() {
         Some(worst) => lines.push(format!("Worst {}: {}", worst.kind.name(), worst_sentence(worst))),
+        None if replay.joints.iter().any(|joint| report.travel(joint).small) => {
+            lines.push("No joint has a plan that moves far or fast enough to tell its starts.".to_owned());
+        }
         None if replay.joints.iter().all(|j| !j.plan_moves) => {
             lines.push("No joint has a plan that moves: there is no transition to judge.".to_owned());
         }
@@ -114,12 +117,22 @@ fn swings(report: &Report) -> Option<String> {
 /// A joint that moves without its plan, or does not move or answer as its plan does; `None` if both move.
 pub(super) fn stray(report: &Report, joint: &JointReplay) -> Option<String> {
     let name = &joint.name;
-    let Travel { planned, measured, rests } = report.travel(joint);
+    let Travel { planned, measured, rests, small } = report.travel(joint);
     let both = || {
         let [measured, planned] = [measured, planned].map(|travel| position(joint.kind, travel));
         format!("{name} moves by {measured} in all, its plan by {planned}")
     };
     let starts = starts_of(joint.starts, joint.reversals);
+    if small {
+        let sizes = report.replay.rules.sizes(joint.kind);
+        return Some(format!(
+            "{name} goes {} and its plan {}, too slow or too short to tell starts: they are looked for from {} and {} a second on.",
+            position(joint.kind, measured),
+            position(joint.kind, planned),
+            position(joint.kind, sizes.min_travel),
+            position(joint.kind, sizes.start_speed)
+        ));
+    }
     match (joint.plan_moves, joint.moves) {
         (true, true) => None,
         (false, true) => Some(format!(

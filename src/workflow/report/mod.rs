@@ -111,12 +111,13 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     let broken = carried.broken(&recording);
     let model = inputs.delay_model.ready(&recording);
     let sides = [&recording.planned, &recording.measured];
-    let by_receipt = recording.source.time_base == TimeBase::Log;
+    // The rows of a table have one time.
+    let no_other_clock = recording.source.time_base == TimeBase::Log || recording.source.origin.is_some();
     let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
     let (alignment, pairs) = aligned(taken(&mut recording), &inputs.rules, &mut remarks);
     let pairs = stretches(pairs, &inputs.stretches_s);
     if pairs.is_empty() {
-        return Err(LogError::NoOverlap { planned_s, measured_s, by_receipt }.into());
+        return Err(LogError::NoOverlap { planned_s, measured_s, no_other_clock }.into());
     }
     let Analysis { alignment, pairs, replay } = Analysis::of(alignment, pairs, &inputs.rules);
     // A command that was made ahead of its plan may have joints lead it.

@@ -88,7 +88,13 @@ pub struct Travel {
     pub measured: f64,
     /// Whether the joint moves by no more than noise does.
     pub rests: bool,
+    /// Whether the joint clearly goes as far as its plan, which is too slow or too short for a planned motion.
+    pub small: bool,
 }
+
+/// A stroke is clear that is so many standard deviations of its noise, and followed where the joint goes as far within this share.
+const CLEAR_SIGMAS: f64 = 50.0;
+const ALIKE: f64 = 0.2;
 
 impl Report {
     /// Joints that swing though their plans do not.
@@ -103,11 +109,29 @@ impl Report {
         let planned = span(range(own().flat_map(|pair| pair.planned.iter().copied())));
         let measured = span(range(own().flat_map(|pair| pair.measured.iter().copied())));
         let least = self.replay.rules.sizes(joint.kind).min_travel;
-        Travel { planned, measured, rests: measured <= least.max(NOISE_SIGMAS * joint.noise.sigma) }
+        let rests = measured <= least.max(NOISE_SIGMAS * joint.noise.sigma);
+        let small = !joint.plan_moves && is_clear([planned, measured], joint.noise.sigma);
+        Travel { planned, measured, rests, small }
     }
 
     /// Whether every limit is kept.
     pub fn gates_kept(&self) -> bool {
         self.gates.iter().all(|gate| gate.kept)
+    }
+}
+
+/// Whether a joint clearly goes as far as its plan.
+fn is_clear([planned, measured]: [f64; 2], sigma: f64) -> bool {
+    planned > CLEAR_SIGMAS * sigma && (measured - planned).abs() <= ALIKE * planned
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_short_stroke_is_clear_above_noise_and_shaking_is_none() {
+        assert!(is_clear([3e-3, 3.01e-3], 2e-6) && is_clear([24e-6, 24.1e-6], 15e-9));
+        assert!(!is_clear([0.0, 1e-4], 1e-5) && !is_clear([1e-4, 1.1e-4], 1e-5) && !is_clear([0.0; 2], 0.0));
     }
 }

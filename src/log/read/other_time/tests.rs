@@ -134,3 +134,21 @@ fn clocks_that_run_apart_are_told_and_joints_that_lag_each_by_itself_are_not() {
         assert_eq!(said(&late), None);
     }
 }
+
+#[test]
+fn a_motion_that_repeats_itself_is_late_by_no_period() {
+    let swings = |hz: f64, late_s: f64| {
+        let of = |name: &str, size: f64| {
+            Track::sampled(name, 2000, |t| size * (std::f64::consts::TAU * hz * (t - late_s)).sin())
+        };
+        Series { tracks: vec![of("hip", 0.3), of("knee", -0.4)] }
+    };
+    for hz in [0.3, 0.8, 1.0, 1.3, 1.8, 2.5] {
+        assert_eq!(message(&swings(hz, 0.0), &swings(hz, 0.06), false), None, "{hz} Hz");
+    }
+    assert_eq!(
+        message(&swings(2.0, 0.0), &swings(2.0, 0.3), false),
+        None,
+        "a lead of 0.2 s is a lag of 0.3 s"
+    );
+}
