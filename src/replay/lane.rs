@@ -66,7 +66,12 @@ fn between(found: &Replay, joint: &str, [begin_s, end_s]: [f64; 2]) -> Vec<Stret
             (Answer::Never, _) => moves_to_s,
             (_, onset_s) => onset_s.unwrap_or(from_s).clamp(from_s, next_s),
         };
-        let settled_s = stop.and_then(|stop| stop.measured_s).filter(|_| start.answer != Answer::Never);
+        // A joint that left and is not seen to come to rest settles on.
+        let settled_s = stop.map(|stop| stop.measured_s.unwrap_or(next_s));
+        let settled_s = settled_s.filter(|_| {
+            start.answer == Answer::Timed
+                || start.answer != Answer::Never && stop.is_some_and(|stop| stop.measured_s.is_some())
+        });
         let ends = [
             (Phase::Waits, from_s, answers_s),
             (Phase::Follows, answers_s, moves_to_s),
@@ -135,6 +140,13 @@ mod tests {
             lane.iter().any(|one| one.phase == Phase::Follows && (one.to_s - 3.0).abs() < 0.1),
             "{lane:?}"
         );
+    }
+
+    #[test]
+    fn a_joint_that_is_not_seen_to_come_to_rest_settles_on() {
+        let found = run(&[1.0], &[1.9], 3.6);
+        let expected = [(Phase::Waits, 1.0, 1.9), (Phase::Follows, 1.9, 3.0), (Phase::Settles, 3.0, 3.6)];
+        assert_is(&lane(&found, "boom", &[[0.0, 3.6]]), &expected);
     }
 
     #[test]

@@ -119,7 +119,7 @@ pub(super) fn assemble(
         held::of_command(command, sides[1].1, &mut remarks);
     }
     let one_clock = options.measured_delay_ns == Some(0);
-    spoilt::of_sides([sides[0].1, sides[1].1], command.as_ref(), one_clock, &mut remarks);
+    let stood_s = spoilt::of_sides([sides[0].1, sides[1].1], command.as_ref(), one_clock, &mut remarks);
     quality::of_pairs([sides[0].1, sides[1].1], options, assembly.kinds.stated(), &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);
@@ -137,6 +137,7 @@ pub(super) fn assemble(
         command,
         signals,
         source,
+        stood_s,
         remarks,
         attachments,
         metadata,

@@ -119,6 +119,9 @@ pub struct Recording {
     pub signals: BTreeMap<SignalRole, Vec<Signal>>,
     /// Where plan and measurement come from.
     pub source: SourceInfo,
+    /// From when to when the machine stood though its plan went on, s, where the remarks say that it was stopped; the second is infinite
+    /// where it did not go on.
+    pub stood_s: Option<[f64; 2]>,
     /// Doubts about the data.
     pub remarks: Remarks,
     /// Files stored in the log.

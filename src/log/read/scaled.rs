@@ -22,6 +22,9 @@ const SHARE: f64 = 0.008;
 const COUNTS: [f64; 2] = [0.3 * DEGREE_RAD, 3e-3];
 const EXPLAINS: f64 = 0.97;
 
+/// A joint that goes less than this share of its plan is not on another scale: it does not move.
+const HARDLY: f64 = 0.02;
+
 /// A rest of a plan at another place than the one before.
 #[derive(Clone, Copy)]
 struct Rest {
@@ -54,6 +57,15 @@ pub(super) fn scaled(planned: &Track, measured: &Track) -> Option<String> {
     }
     let counts = share.abs() >= SHARE && share.abs() * (highest - lowest) >= COUNTS[kind];
     (counts && left <= (1.0 - EXPLAINS) * spread).then(|| {
+        if 1.0 + share < HARDLY {
+            return format!(
+                "{} does not move, or its sensor does not show it: from rest to rest it was measured {:.3} times as far as its plan ({} \
+                 rests)",
+                planned.name(),
+                1.0 + share,
+                rests.len()
+            );
+        }
         format!(
             "{} was measured {:.3} times as far as its plan from rest to rest ({} rests): is a gear, a lever or an encoder's scale off by \
              {:.1} %, or does its load hold it off? A fit takes that for a dead band, and a correction drives a joint off whose scale it is",
@@ -118,6 +130,8 @@ mod tests {
         let said = |until: usize, of: &dyn Fn(f64) -> f64| scaled(&track(until, &plan), &track(until, of));
         let far = said(2800, &|t| 1.02 * plan(t - 0.1) + 0.01).unwrap();
         assert!(far.contains("1.020 times as far") && far.contains("(7 rests)"), "{far}");
+        let dead = said(2800, &|t| 1e-5 * (9.0 * t).sin()).unwrap();
+        assert!(dead.starts_with("boom does not move") && !dead.contains("scale"), "{dead}");
         let band = |t: f64| plan(t) + 0.006 * f64::from(if (t / 4.0) % 2.0 < 1.0 { 1 } else { -1 });
         let of: [&dyn Fn(f64) -> f64; 3] = [&|t| plan(t) + 0.02, &band, &|t| 1.002 * plan(t)];
         assert!(of.iter().all(|of| said(2800, of).is_none()));

@@ -7,13 +7,14 @@ use crate::{
 };
 
 /// Remarks the first that holds: a stop of a run that was in time, another time, a stop of one that was not. What was
-/// sent may run ahead of the plan, and the joints with it: they are at another time if they are so by the command, too.
+/// sent may run ahead of the plan, and the joints with it: they are at another time if they are so by the command, too. Gives the
+/// time of a stop that is remarked, s.
 pub(super) fn of_sides(
     [planned, measured]: [&Series; 2],
     command: Option<&Command>,
     one_clock: bool,
     remarks: &mut Remarks,
-) {
+) -> Option<[f64; 2]> {
     let mut stops = stopped::stops(planned, measured);
     // What was sent must go on, too, or stand itself while the plan goes on.
     if let Some(Command { series: sent, .. }) = command
@@ -22,16 +23,16 @@ pub(super) fn of_sides(
     {
         stops.clear();
     }
-    let stop = |stop: &stopped::Stop| (Code::Stopped, stop.message.clone());
-    let in_time = stops.iter().find(|stop| stop.in_time).map(stop);
-    let found = in_time
-        .or_else(|| {
-            other_time([planned, measured], command, one_clock).map(|message| (Code::OtherTime, message))
-        })
-        .or_else(|| stops.first().map(stop));
-    if let Some((code, message)) = found {
-        remarks.add(code, 1, message);
+    let in_time = stops.iter().find(|stop| stop.in_time);
+    if in_time.is_none()
+        && let Some(message) = other_time([planned, measured], command, one_clock)
+    {
+        remarks.add(Code::OtherTime, 1, message);
+        return None;
     }
+    let stop = in_time.or(stops.first())?;
+    remarks.add(Code::Stopped, 1, stop.message.clone());
+    Some(stop.stood_s)
 }
 
 fn other_time(

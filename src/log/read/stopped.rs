@@ -28,8 +28,10 @@ const OFF: f64 = 0.2;
 /// For so long after a stop a plan may go on, and before a start: machines lag, s.
 const LAGS_S: f64 = 1.0;
 
-/// What was found, and whether the run had followed its plan at the same time before: what had not may be late.
+/// What was found, from when to when the machine stood, s, and whether the run had followed its plan at the same time before: what had
+/// not may be late.
 pub(super) struct Stop {
+    pub(super) stood_s: [f64; 2],
     pub(super) message: String,
     pub(super) in_time: bool,
 }
@@ -70,7 +72,8 @@ pub(super) fn stops(planned: &Series, measured: &Series) -> Vec<Stop> {
             names.join(", ")
         );
         let late_s = *late_s.get_or_insert_with(|| late_s_of(planned, measured));
-        found.push(Stop { message, in_time: followed(&joints, [first_s, from_s], late_s) });
+        let stood_s = [from_s, if for_good { f64::INFINITY } else { to_s }];
+        found.push(Stop { stood_s, message, in_time: followed(&joints, [first_s, from_s], late_s) });
     }
     found
 }

@@ -2,7 +2,12 @@
 
 use maud::{Markup, html};
 
-use super::{kind, scope, short::verdicts, tables::document, together, together_name};
+use super::{
+    kind, scope,
+    short::{plans, verdicts},
+    tables::document,
+    together, together_name,
+};
 use crate::{
     render::{
         kit::{
@@ -21,7 +26,7 @@ use crate::{
     },
     replay::{Dimension, Keyed, Metric, PEAK_ERROR, Transition},
     series::{JointKind, Pair},
-    workflow::compare::{Change, Comparison, Figures, Scope, TransitionPair, Verdict},
+    workflow::compare::{Change, Comparison, Figures, Idle, Scope, TransitionPair, Verdict},
 };
 
 /// Places of a series at most, nearly.
@@ -33,12 +38,18 @@ pub(crate) fn page(comparison: &Comparison, most: usize) -> String {
     let apart = [Id::REMARKS, Id::METHOD];
     let numbers = document.sections.iter().filter(|section| !apart.contains(&section.id));
     let mut plots = Plots::default();
-    let mut chapters = vec![
-        Chapter { id: "summary", heading: "In short", body: summary(comparison) },
-        Chapter { id: "pairs", heading: "Every transition", body: scatters(comparison, &mut plots) },
-        Chapter { id: "joints", heading: "Error over the run", body: runs(comparison, &mut plots) },
-        Chapter::new("numbers", "Numbers", html! { @for section in numbers { (headed(section)) } }),
-    ];
+    let mut chapters = vec![Chapter { id: "summary", heading: "In short", body: summary(comparison) }];
+    if comparison.idle() != Some(Idle::NoPair) {
+        chapters.extend([
+            Chapter { id: "pairs", heading: "Every transition", body: scatters(comparison, &mut plots) },
+            Chapter { id: "joints", heading: "Error over the run", body: runs(comparison, &mut plots) },
+        ]);
+    }
+    chapters.push(Chapter::new(
+        "numbers",
+        "Numbers",
+        html! { @for section in numbers { (headed(section)) } },
+    ));
     chapters.extend(Chapter::of(document.section(Id::REMARKS), "Remarks on the data"));
     chapters.extend(Chapter::of(document.section(Id::METHOD), "Method"));
     kit::page::page("comparison", &document, &chapters, &plots)
@@ -47,6 +58,21 @@ pub(crate) fn page(comparison: &Comparison, most: usize) -> String {
 fn summary(comparison: &Comparison) -> Markup {
     let kept: Vec<bool> = comparison.gates.iter().map(|gate| gate.kept).collect();
     let lines: Vec<String> = verdicts(comparison).iter().map(Sentence::to_string).collect();
+    if let Some(idle) = comparison.idle() {
+        let headline = if idle == Idle::NoPair { "Not comparable" } else { "The same run twice" };
+        let why = match idle {
+            Idle::NoPair => {
+                "No planned start of one side has a counterpart in the other.".to_owned()
+                    + " "
+                    + &plans(comparison)
+            }
+            Idle::SameRun => {
+                "Both sides are one and the same run: their difference says nothing of a change.".to_owned()
+            }
+        };
+        let body = html! { p { (clean(&why)) } p { a href="#remarks" { "Remarks on the data" } } };
+        return html! { div class="cards" { (card("care", "Peak error at transitions", headline, &body)) (verdict(&kept, &lines)) } };
+    }
     html! {
         div class="cards" {
             (change(comparison))

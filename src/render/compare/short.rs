@@ -11,7 +11,7 @@ use crate::{
     replay::{Answer, ONSET_DELAY, PEAK_ERROR},
     series::JointKind,
     workflow::compare::{
-        Change, Comparison, Figures, Form, GateResult, Run, Scope, Summary, TransitionPair, Verdict,
+        Change, Comparison, Figures, Form, GateResult, Idle, Run, Scope, Summary, TransitionPair, Verdict,
     },
 };
 
@@ -22,14 +22,17 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     let some = peaks.iter().filter(|peak| peak.pairs > 0);
     lines.extend(some.map(|peak| verdict(peak, kind(comparison, &peak.scope))));
     if lines.is_empty() {
-        lines.push("No transition is found in every run: there is none to compare.".to_owned());
+        lines.push("Not comparable: no transition is found in every run.".to_owned());
+    } else if comparison.idle() == Some(Idle::SameRun) {
+        lines.insert(0, "Both sides are one and the same run: their difference says nothing.".to_owned());
     }
     lines.extend(joints(comparison, &peaks));
     lines.extend(of_few_runs(&peaks));
     lines.extend(measured_otherwise(comparison, &peaks));
     lines.extend(answers(comparison));
     lines.extend(at_the_tool(comparison).map(|changes| format!("At the tool: {changes}.")));
-    lines.extend(together(comparison).filter_map(whole_run));
+    let compares = comparison.idle() != Some(Idle::NoPair);
+    lines.extend(together(comparison).filter(|_| compares).filter_map(whole_run));
     lines.extend(against(comparison));
     lines.push(plans(comparison));
     lines.extend(comparison.after.iter().filter_map(|run| {
@@ -200,7 +203,7 @@ pub(crate) fn at_the_tool(comparison: &Comparison) -> Option<String> {
     Some(shown.into_iter().filter_map(arrow).collect::<Vec<_>>().join(", "))
 }
 
-fn plans(comparison: &Comparison) -> String {
+pub(super) fn plans(comparison: &Comparison) -> String {
     let duration = |runs: &[Run]| runs.first().and_then(|run| run.plan_duration_s);
     let most = |of: fn(&Run) -> Option<f64>| {
         comparison.after.iter().map(of).reduce(|a, b| Some(a?.max(b?))).flatten()

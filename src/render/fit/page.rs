@@ -65,6 +65,12 @@ fn summary(fitted: &Fitted, next: Option<&Section>) -> Markup {
         p { "Enough to make a command from: a held-out R2 of " (crate::fit::LEAST_SKILL) " or more." }
         @for joint in rest { p { (clean(&doubt(joint))) } }
     };
+    let [known, all] = fitted.known();
+    let told = html! {
+        p { "Of lag, dead band, gain and feed-forward of each joint. What the logs do not tell stands in brackets: enough to predict such \
+             runs, not to plan others." }
+        @if known < all { p { "Sharp starts, stops and several speeds tell more: " code { "hydrotrace excite" } " makes such a run." } }
+    };
     let worst = joints.iter().min_by(|a, b| a.held_out_r2.total_cmp(&b.held_out_r2));
     let starts = html! {
         p { "In 90 % of " (counted(fitted.fit.margin_starts, "start")) " that were held out, the measured peak stays below that." }
@@ -72,6 +78,7 @@ fn summary(fitted: &Fitted, next: Option<&Section>) -> Markup {
     html! {
         div class="cards" {
             (card(class, "Good enough", &headline, &why))
+            (card(if known < all { "care" } else { "good" }, "Numbers that the logs tell", &format!("{known} of {all}"), &told))
             @if let Some(worst) = worst {
                 (card("", "Joint that is predicted least", &clean(&format!("{}: {:.1} %", worst.name, 100.0 * worst.held_out_r2.max(0.0))),
                     &html! { p { "Share of the squared error that is predicted where the model was not fitted to it, R2." } }))

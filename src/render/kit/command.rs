@@ -40,7 +40,13 @@ pub(crate) fn reading(line: &str, options: &[String]) -> String {
             let leaves_out = |option: &&String| LEAVE_OUT.iter().any(|one| option.starts_with(one));
             options.iter().filter(|option| !leaves_out(option)).map(String::as_str).collect()
         }
-        _ if READERS.contains(&verb) => options.iter().map(String::as_str).collect(),
+        _ if READERS.contains(&verb) => {
+            // What a line says itself counts.
+            let said = |option: &&String| {
+                line.contains(&format!(" {} ", option.split([' ', '=']).next().unwrap_or_default()))
+            };
+            options.iter().filter(|option| !said(option)).map(String::as_str).collect()
+        }
         _ => Vec::new(),
     };
     [line].into_iter().chain(taken).collect::<Vec<_>>().join(" ")

@@ -3,7 +3,7 @@
 use super::{
     method::method,
     resting::at_rest,
-    steps::{LEARNT, replanned},
+    steps::{LEARNT, named, replanned, told, without, words},
     tables::{stray, verdicts},
     together::Together,
     tool, why,
@@ -38,7 +38,8 @@ pub(crate) fn answer(report: &Report, explain: bool) -> Document {
         format!("{:.1} s, {}{rate}", report.source.duration_s, counted(report.alignment.len(), "joint"));
     let mut facts = vec![fact("run", run)];
     facts.extend(at_tool(report));
-    facts.push(worst(replay));
+    facts.extend(report.fault.as_ref().map(|fault| fact("fault", told(fault).join(". "))));
+    facts.push(worst(report));
     facts.extend(why(report));
     facts.extend(starts(replay));
     facts.extend(astray(report));
@@ -66,9 +67,8 @@ fn at_tool(report: &Report) -> Option<Fact> {
     Some(fact("tool", format!("{} mm off at {:.1} s{end}{cause}", mm(worst.deviation.error_m), worst.time_s)))
 }
 
-fn worst(replay: &Replay) -> Fact {
-    let found = replay.worst_first();
-    let Some(worst) = found.first() else { return fact("starts", "no planned start from rest") };
+fn worst(report: &Report) -> Fact {
+    let Some(worst) = report.worst() else { return fact("starts", "no planned start from rest") };
     let leaves = match worst.onset_delay_s {
         Some(delay_s) => format!("leaves {}", late(delay_s)),
         None => "has no start that can be timed".to_owned(),
@@ -85,7 +85,7 @@ fn why(report: &Report) -> Option<Fact> {
     if let Err(reason) = report.why.as_ref()? {
         return Some(fact("why", format!("not told: {reason}")));
     }
-    let start = why::of(report, &report.replay.worst_first().first()?.id)?;
+    let start = why::of(report, &report.worst()?.id)?;
     Some(fact("why", why::phrase(start)))
 }
 
@@ -160,13 +160,18 @@ fn doubts(report: &Report) -> Option<Fact> {
 
 /// The most urgent step as commands, and what they are for.
 fn next(report: &Report) -> (String, Vec<String>) {
-    let names: Vec<String> = report.paths.iter().map(argument).collect();
+    let names = named(report);
     let (joined, log) = as_one(&report.paths);
     let of_one = |line: String| joined.iter().cloned().chain([line]).collect();
-    let reported = || vec![command(&["report", &names.join(" ")])];
+    let reported = || vec![command(&["report", &names])];
     let steps = advice(report);
     let urgent = steps.iter().find(|step| !matches!(step, Advice::SetLimits | Advice::Compare));
     match urgent {
+        Some(Advice::SeeTo(fault)) => (
+            format!("{}: see to that first. What the run shows:", told(fault)[0]),
+            vec![without(fault, report)],
+        ),
+        Some(step @ Advice::LeaveIt { .. }) => (words(step, "", false), reported()),
         Some(Advice::ClearDoubts(_)) => {
             ("To see the doubts about the data, which come first:".to_owned(), reported())
         }
@@ -190,7 +195,7 @@ fn next(report: &Report) -> (String, Vec<String>) {
         ),
         Some(Advice::RecordStarts) => (
             "To see what the log holds:".to_owned(),
-            vec![command(&["info", names.first().map_or("", String::as_str)])],
+            vec![command(&["info", &report.paths.first().map(argument).unwrap_or_default()])],
         ),
         _ => ("To see every start and joint:".to_owned(), reported()),
     }

@@ -11,7 +11,7 @@ use crate::{
             page::{
                 Shows,
                 chart::{Chart, Size},
-                envelope::envelope,
+                envelope::{crests, envelope},
             },
         },
         metric::position,
@@ -46,7 +46,7 @@ pub(super) fn lanes(report: &Report) -> Markup {
     html! {
         p class="hint" {
             "Waits: the plan has left rest, the joint has not. Follows: the plan moves, and the joint. Settles: the plan rests, the joint moves on. \
-             White: nothing was measured, or there is no plan. A line that stays up while both rest is an error that stays. \
+             Grey: both rest. Blank: nothing was measured, or there is no plan. A line that stays up while both rest is an error that stays. \
              In lanes of long runs the height of a colour is its share of the time."
         }
         table class="lanes" {
@@ -123,17 +123,12 @@ fn outline(pair: &Pair, most: f64, crowded: bool, place: impl Fn(f64) -> f64) ->
     let error: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| (p - m).abs()).collect();
     let (mut path, mut pen) = (String::new(), 'M');
     // Of more swings than places only the peaks are left: the way down between them would fill the lane.
-    let places = envelope(&pair.segments, &[&error], PLACES);
-    let rests =
-        |at: &Option<usize>, than: &Option<usize>| at.zip(*than).is_some_and(|(a, b)| error[a] < error[b]);
-    let valley = |k: usize| {
-        k > 0
-            && k + 1 < places.len()
-            && rests(&places[k], &places[k - 1])
-            && rests(&places[k], &places[k + 1])
+    let places = if crowded {
+        crests(&pair.segments, &error, PLACES)
+    } else {
+        envelope(&pair.segments, &[&error], PLACES)
     };
-    let peaks = (0..places.len()).filter(|k| !(crowded && valley(*k))).map(|k| places[k]);
-    for at in peaks {
+    for at in places {
         let Some((t_s, error)) = at.and_then(|i| Some((pair.t_s.get(i)?, error.get(i)?))) else {
             pen = 'M';
             continue;
@@ -148,7 +143,7 @@ fn outline(pair: &Pair, most: f64, crowded: bool, place: impl Fn(f64) -> f64) ->
 
 /// The worst start from its planned instant: position from there, speed, how far behind.
 pub(super) fn worst_start(report: &Report) -> Option<Chart> {
-    let worst: &Transition = report.replay.worst_first().into_iter().next()?;
+    let worst: &Transition = report.worst()?;
     let pair = report.pairs.iter().find(|pair| pair.name == worst.joint)?;
     let latest_s = worst.onset_delay_s.unwrap_or(0.0).max(worst.time_to_peak_s);
     let after_s = (latest_s + 0.4).clamp(AFTER_S[0], AFTER_S[1]);
@@ -160,7 +155,8 @@ pub(super) fn worst_start(report: &Report) -> Option<Chart> {
     };
     let speed = speed(&mut chart, report, pair, seen, 0.4)?;
     chart.panels.insert(1, speed);
-    chart.title = format!("The worst start: {}", chart.title);
+    let of = if report.fault.is_some() { " of the others" } else { "" };
+    chart.title = format!("The worst start{of}: {}", chart.title);
     (chart.size, chart.height, chart.x_range) = (Size::Half, 330, Some([-BEFORE_S, after_s]));
     Some(chart)
 }

@@ -1,10 +1,10 @@
 //! Joints over the whole run: planned, measured, error.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, ops::Range};
 
 use maud::{Markup, html};
 
-use super::{signals, tables::lag};
+use super::{signals, tables::lag, tiles::MOST as TILES};
 use crate::{
     render::{
         kit::{
@@ -12,19 +12,24 @@ use crate::{
             page::{
                 Plots,
                 chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, times},
-                envelope::envelope,
+                envelope::with_parts,
                 strip::{Row, intervals},
             },
         },
         metric::{on_paper, position, unit},
     },
-    replay::{Dimension, JointReplay, Transition},
+    replay::{Dimension, Replay, Transition},
     series::Pair,
     workflow::report::Report,
 };
 
 /// Places of a series at most, nearly.
 const MOST: usize = 3000;
+/// Of the worst starts of a joint so many places more in each window, nearly, and in all.
+pub(super) const EACH: usize = 400;
+const PARTS: usize = 12_000;
+/// Shown before a start, s.
+const BEFORE_S: f64 = 0.5;
 
 /// A plot for each joint.
 pub(super) fn joints(report: &Report, plots: &mut Plots) -> Markup {
@@ -36,6 +41,10 @@ pub(super) fn joints(report: &Report, plots: &mut Plots) -> Markup {
         p class="hint" {
             "Drag to zoom, double-click for the whole run; all joints zoom together. Ctrl and wheel zoom, shift and wheel move; a \
              click sets a second cursor, from which differences count; a legend hides its line. Error is planned minus measured."
+            @if report.pairs.iter().any(|pair| pair.t_s.len() > MOST) {
+                " Of a long run samples are left out, those of peaks never: what lies between the points of a zoom, a report of that part \
+                 shows (--from, --to)."
+            }
         }
         p class="same-scale" { label { input type="checkbox"; " One scale for all joints" } }
         @for (joint, chart) in charts { div class="joint" data-name=(clean(&joint)) { (plots.place(chart)) } }
@@ -48,27 +57,28 @@ pub(super) fn joint_charts(report: &Report) -> Vec<(String, Chart)> {
     for transition in &report.replay.transitions {
         of.entry(&transition.joint).or_default().push(transition);
     }
-    let numbers: BTreeMap<&str, &JointReplay> =
-        report.replay.joints.iter().map(|joint| (joint.name.as_str(), joint)).collect();
     let chart = |pair: &Pair| {
         let transitions = of.get(pair.name.as_str()).map_or(&[][..], Vec::as_slice);
-        (pair.name.clone(), joint_chart(pair, numbers.get(pair.name.as_str()).copied(), transitions))
+        (pair.name.clone(), joint_chart(pair, &report.replay, transitions))
     };
     report.pairs.iter().map(chart).collect()
 }
 
-fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Transition]) -> Chart {
+fn joint_chart(pair: &Pair, replay: &Replay, transitions: &[&Transition]) -> Chart {
     let error: Vec<f64> = pair.planned.iter().zip(&pair.measured).map(|(p, m)| p - m).collect();
-    let places = envelope(&pair.segments, &[&pair.planned, &pair.measured, &error], MOST);
+    let parts = windows(pair, replay);
+    let places = with_parts(&pair.segments, &[&pair.planned, &pair.measured, &error], MOST, (&parts, EACH));
     let shown =
         |values: &[f64]| at(values, &places).map(|value| rounded(on_paper(pair.kind, value))).collect();
     let unit = unit(Dimension::Position, pair.kind);
     let series = |name: &str, role, y| Series::of(name, role, 0, y);
+    let numbers = replay.joints.iter().find(|joint| joint.name == pair.name);
     let note = numbers.map_or(String::new(), |joint| {
         let late = joint.lag_s.map_or(String::new(), |s| format!(", lag {} ms", ms(s)));
         let error = &joint.tracking_error;
         format!("rms {}, peak {}{late}", position(pair.kind, error.rms), position(pair.kind, error.peak))
     });
+    let note = note + &left_out(places.iter().flatten().count(), pair.t_s.len());
     Chart {
         title: pair.name.clone(),
         note,
@@ -90,6 +100,31 @@ fn joint_chart(pair: &Pair, numbers: Option<&JointReplay>, transitions: &[&Trans
         group: Some("run"),
         height: 270,
         size: Size::Wide,
+    }
+}
+
+/// Samples of a joint in the windows of starts that are drawn whole: the worst of all joints, which a click shows, then its own.
+pub(super) fn windows(pair: &Pair, replay: &Replay) -> Vec<Range<usize>> {
+    let worst = replay.worst_first();
+    let own = worst.iter().filter(|start| start.joint == pair.name);
+    let at = |time_s: f64| pair.t_s.partition_point(|t_s| *t_s < time_s);
+    let window = |start: &&Transition| at(start.window_s[0] - BEFORE_S)..at(start.window_s[1]);
+    let mut left = PARTS;
+    let fits = |part: &Range<usize>| {
+        let enough = left > 0;
+        left = left.saturating_sub(part.len().min(EACH));
+        enough
+    };
+    worst.iter().take(TILES).chain(own).map(window).take_while(fits).collect()
+}
+
+/// What a plot that leaves samples out says of them.
+fn left_out(drawn: usize, all: usize) -> String {
+    let of = all as f64 / drawn.max(1) as f64;
+    if drawn < all {
+        format!("; 1 of {of:.1} samples drawn, most at the worst starts")
+    } else {
+        String::new()
     }
 }
 

@@ -1,11 +1,12 @@
 //! What else was logged of a joint, under its plot on the same times: speeds, command, valve, pressures.
 
+use super::joints::{EACH, windows};
 use crate::{
     log::SignalRole,
     render::{
         kit::page::{
             chart::{Chart, Panel, Role, Series, at, hundredths, rounded, times},
-            envelope::envelope,
+            envelope::{envelope, with_parts},
         },
         metric::{on_paper, unit},
     },
@@ -96,7 +97,9 @@ pub(super) fn speed(
     let [from, to] = view.shown_s.map(|shown_s| t_s.partition_point(|t_s| *t_s < shown_s));
     let within = |part: &std::ops::Range<usize>| part.start.max(from)..part.end.min(to);
     let parts: Vec<_> = pair.segments.iter().map(within).filter(|part| !part.is_empty()).collect();
-    let places = envelope(&parts, &[&planned, &measured], MOST);
+    let whole = from == 0 && to == t_s.len();
+    let windows = if whole { windows(pair, replay) } else { Vec::new() };
+    let places = with_parts(&parts, &[&planned, &measured], MOST, (&windows, EACH));
     let x = coordinates(chart, &t_s, &places);
     let shown = |values| at(values, &places).map(|value| hundredths(on_paper(pair.kind, view.sign * value)));
     let series = vec![

@@ -3,18 +3,19 @@
 use crate::{
     render::{
         kit::{Sentence, argument, command, counted, late, ms, reading, starts_of},
+        metric::position,
         next::as_one,
     },
     series::JointKind,
     workflow::report::{
-        Report,
+        Fault, Report,
         advice::{Advice, advice},
     },
 };
 
 /// The steps, the most urgent first; lines name the log as the caller did and read it with the same options.
 pub(super) fn steps(report: &Report, read: &[String]) -> Vec<(Sentence, Option<String>)> {
-    let worst = report.replay.worst_first().first().map_or(report.replay.kind(), |worst| worst.joint_kind);
+    let worst = report.worst().map_or(report.replay.kind(), |worst| worst.joint_kind);
     let limit = match worst {
         JointKind::Turns => ["--max-transition-peak-deg", "0.5"],
         JointKind::Slides => ["--max-transition-peak-mm", "5"],
@@ -40,14 +41,56 @@ fn lines(step: &Advice, report: &Report, limit: [&str; 2], learns: bool) -> Vec<
         Advice::ShiftCommand { fits: true, .. } | Advice::EaseStarts { fits: true, .. } => {
             replanned(&log, learns)
         }
-        Advice::SetLimits => {
-            let logs = report.paths.iter().map(argument).collect::<Vec<_>>().join(" ");
-            return vec![command(&["report", &logs, limit[0], limit[1]])];
-        }
+        Advice::SetLimits => return vec![command(&["report", &named(report), limit[0], limit[1]])],
+        Advice::SeeTo(fault @ Fault::Stopped { .. }) => return vec![without(fault, report)],
         Advice::Compare => command(&["compare", &log, "NEXT_RUN"]),
         _ => return Vec::new(),
     };
     joined.into_iter().chain([line]).collect()
+}
+
+/// The files of a run, as arguments.
+pub(super) fn named(report: &Report) -> String {
+    report.paths.iter().map(argument).collect::<Vec<_>>().join(" ")
+}
+
+/// What shows the run, up to where the machine stopped.
+pub(super) fn without(fault: &Fault, report: &Report) -> String {
+    let logs = named(report);
+    match fault {
+        Fault::Stopped { from_s, .. } => command(&["report", &logs, "--to", &format!("{from_s:.1}")]),
+        Fault::Dead { .. } => command(&["report", &logs]),
+    }
+}
+
+/// What happened, in a few words, and more of it.
+pub(super) fn told(fault: &Fault) -> [String; 2] {
+    match fault {
+        Fault::Stopped { from_s, to_s: None } => [
+            format!("The machine stopped at {from_s:.1} s"),
+            "Its plan went on. Figures of the whole run count the error from then on.".to_owned(),
+        ],
+        Fault::Stopped { from_s, to_s: Some(to_s) } => [
+            format!("The machine stood from {from_s:.1} to {to_s:.1} s"),
+            "Its plan went on. Figures of the whole run count the error of that time.".to_owned(),
+        ],
+        Fault::Dead { joints, starts, .. } => {
+            let (who, does, whose) = match joints.as_slice() {
+                [one] => (one.clone(), "does", "Its plan does"),
+                many => (listed(many), "do", "Their plans do"),
+            };
+            let starts = counted(*starts, "planned start");
+            [format!("{who} {does} not move"), format!("{whose}: {starts}, none answered.")]
+        }
+    }
+}
+
+/// The first of many names, and how many more there are.
+fn listed(names: &[String]) -> String {
+    const MOST: usize = 4;
+    let more = names.len().saturating_sub(MOST);
+    let more = if more == 0 { String::new() } else { format!(" and {more} more") };
+    names[..names.len().min(MOST)].join(", ") + &more
 }
 
 /// What makes a command that compensates what these logs show; `learns` says that one was sent already.
@@ -65,12 +108,26 @@ fn half_late(delay_s: Option<f64>) -> String {
 }
 
 /// `limit`: an option that sets one for the kind of the joints; `learns`: a command was sent already.
-fn words(step: &Advice, limit: &str, learns: bool) -> String {
+pub(super) fn words(step: &Advice, limit: &str, learns: bool) -> String {
     match step {
         Advice::ClearDoubts(kinds) => format!(
             "Clear the doubts about the data first: {} below.",
             counted(*kinds, "remark")
         ),
+        Advice::SeeTo(fault @ Fault::Stopped { .. }) => format!(
+            "{}: find out why (emergency stop, fault of the controller, hold). No command is made from such a run. Up to then it did:",
+            told(fault)[0]
+        ),
+        Advice::SeeTo(fault @ Fault::Dead { .. }) => format!(
+            "{}: look at enable signal, valve, brake and sensor before any command is made from this run.",
+            told(fault)[0]
+        ),
+        Advice::LeaveIt { noise, error, kind } => format!(
+            "Nothing is to be corrected: of an error of {} RMS at most, {} is noise of the measurement.",
+            position(*kind, *error),
+            position(*kind, *noise)
+        ),
+        Advice::NoCommand(why) => format!("No command can be made from this log: {why}."),
         Advice::FreeJoint { joint, unanswered, starts, reversals } => format!(
             "Find out why {joint} leaves {unanswered} of {} unanswered: enable signals, brakes, a dead band wider than \
              the command, a sensor that stands still.",

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::{
     first::{lanes, worst_start},
-    steps::steps,
+    steps::{steps, told},
     tables::{verdicts, worst_sentence},
     together::Together,
     tool_page::tool_card,
@@ -33,6 +33,10 @@ pub(super) fn summary(report: &Report, read: &[String], plots: &mut Plots) -> Ma
     html! {
         div class="cards" {
             (verdict(&kept, &lines))
+            @if let Some(fault) = &report.fault {
+                @let [what, more] = told(fault);
+                (card("bad", "What happened", &what, &html! { p { (clean(&more)) } }))
+            }
             (tool_card(&report.tool))
             (worst(report))
             @for all in Together::all(&report.replay) { (place_of_error(&all)) }
@@ -47,7 +51,7 @@ pub(super) fn summary(report: &Report, read: &[String], plots: &mut Plots) -> Ma
 }
 
 fn worst(report: &Report) -> Markup {
-    let Some(worst) = report.replay.worst_first().into_iter().next() else {
+    let Some(worst) = report.worst() else {
         let body = html! { p { "No planned start from rest was found." } };
         return card("", "Worst transition", "None", &body);
     };
@@ -61,7 +65,8 @@ fn worst(report: &Report) -> Markup {
     };
     let headline =
         format!("{}: {} of {}", position(worst.joint_kind, worst.peak_error), worst.kind.name(), worst.joint);
-    card("", "Worst transition", &headline, &body)
+    let label = if report.fault.is_some() { "Worst of the other transitions" } else { "Worst transition" };
+    card("", label, &headline, &body)
 }
 
 /// Events that the test needs to tell, nearly.
@@ -91,11 +96,11 @@ fn place_of_error(all: &Together) -> Markup {
         @if let Some(lag) = lag { p { (lag) } }
         p {
             (format!(
-                "{:.0} % of the squared error in {:.0} % of the time{}",
+                "{:.0} % of the squared error in {:.0} % of the time",
                 100.0 * c.squared_error_share_inside,
                 100.0 * c.time_share_inside,
-                c.test.map_or(String::new(), |test| format!(" (p = {})", probability(test.p_value)))
             ))
+            @if let Some(test) = c.test { " (" span class="whole" { "p = " (probability(test.p_value)) } ")" }
         }
     };
     card("", &name, headline, &body)

@@ -3,6 +3,7 @@
 use super::{
     method::method,
     resting::{at_rest, one_way, unanswered},
+    steps::told,
     together::Together,
     tool, why,
 };
@@ -17,7 +18,7 @@ use crate::{
     replay::{
         Answer, JOINT, JointReplay, ONSET_DELAY_LIMIT, Profiles, Replay, Swing, TRANSITION, Transition,
     },
-    workflow::report::{GateResult, Report, Travel},
+    workflow::report::{Fault, GateResult, Report, Travel},
 };
 
 /// Everything a person reads of a report; `most` is how many transitions to list.
@@ -78,8 +79,8 @@ fn in_short(report: &Report) -> Vec<Sentence> {
 
 fn findings(report: &Report) -> Vec<String> {
     let replay = &report.replay;
-    let mut lines = Vec::new();
-    match replay.worst_first().first() {
+    let mut lines: Vec<String> = report.fault.iter().map(|fault| told(fault).join(". ")).collect();
+    match report.worst() {
         Some(worst) => lines.push(format!("Worst {}: {}", worst.kind.name(), worst_sentence(worst))),
         None if replay.joints.iter().any(|joint| report.travel(joint).small) => {
             lines.push("No joint has a plan that moves far or fast enough to tell its starts.".to_owned());
@@ -87,6 +88,7 @@ fn findings(report: &Report) -> Vec<String> {
         None if replay.joints.iter().all(|j| !j.plan_moves) => {
             lines.push("No joint has a plan that moves: there is no transition to judge.".to_owned());
         }
+        None if report.fault.is_some() => {}
         None => lines.push("No planned start from rest was found.".to_owned()),
     }
     lines.extend(replay.joints.iter().filter_map(|joint| unanswered(replay, joint)));
@@ -148,7 +150,9 @@ pub(super) fn stray(report: &Report, joint: &JointReplay) -> Option<String> {
         )),
         (false, false) if rests => Some(format!("{name} does not move, and neither does its plan.")),
         (true, false) if rests && joint.starts > 0 => {
-            Some(format!("{name} does not move although its plan does ({starts})."))
+            // Otherwise said before all.
+            matches!(report.fault, Some(Fault::Stopped { .. }))
+                .then(|| format!("{name} does not move although its plan does ({starts})."))
         }
         _ if joint.starts > 0 => Some(format!("{}: no answer to its plan can be told ({starts}).", both())),
         _ => Some(format!("{}: no start of either can be told.", both())),
@@ -165,6 +169,7 @@ fn wide(start: &Transition) -> String {
 
 pub(super) fn worst_sentence(worst: &Transition) -> String {
     let lateness = match worst.onset_delay_s {
+        Some(delay_s) if ms(delay_s) == "0" => format!("leaves with its plan{}", wide(worst)),
         Some(delay_s) if delay_s >= 0.0 => format!("leaves {} ms after its plan{}", ms(delay_s), wide(worst)),
         Some(delay_s) => format!("leaves {} ms before its plan{}", ms(-delay_s), wide(worst)),
         None => match worst.answer {

@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// Transitions drawn at most.
-const MOST: usize = 48;
+pub(super) const MOST: usize = 48;
 /// Places of a series at most, nearly.
 const PLACES: usize = 300;
 /// Shown before the planned start, s.

@@ -10,6 +10,9 @@ use crate::{
     series::JointKind,
 };
 
+/// What is shown as 0 ms is no lead, s.
+const LEAST_LEAD_S: f64 = 0.0005;
+
 /// Joints that have a unit in common.
 pub(super) struct Together<'a> {
     replay: &'a Replay,
@@ -51,14 +54,14 @@ impl<'a> Together<'a> {
 
     /// What the lags are: a lead where every joint moves before its plan.
     pub(super) fn shift(&self) -> &'static str {
-        if self.lags()[1] < 0.0 { "lead" } else { "lag" }
+        if self.lags()[1] < -LEAST_LEAD_S { "lead" } else { "lag" }
     }
 
     /// How much of the squared error lags at the planned speeds explain; `None` where no joint has one.
     pub(super) fn lag_words(&self) -> Option<String> {
         let share = self.run.lag_share?;
         let [mut least, mut most] = self.lags();
-        if most < 0.0 {
+        if most < -LEAST_LEAD_S {
             (least, most) = (-most, -least);
         }
         let (least, most) = (ms(least), ms(most));

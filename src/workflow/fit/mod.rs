@@ -12,7 +12,7 @@ pub use document::{FitDocument, LimitsFile};
 pub use failure::FitFailure;
 
 use crate::{
-    fit::{Fit, FitError, HeldOut, Observation, fit_and_held_out},
+    fit::{Fit, FitError, HeldOut, JointFit, Observation, fit_and_held_out},
     log::{ReadOptions, Recording, SignalRole, SourceInfo},
     math::range,
     remark::{Code, Remarks},
@@ -177,6 +177,17 @@ pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted
     let again: Vec<usize> = again.into_iter().filter(of_plan).collect();
     let corrected = again.iter().any(|k| is_corrected(observed[*k]));
     Ok(Fitted { fit, held_out, torques, runs, again, corrected, not_again, remarks })
+}
+
+impl Fitted {
+    /// How many of the lags, dead bands, gains and feed-forwards of all joints are known, and of how many.
+    pub fn known(&self) -> [usize; 2] {
+        let of = |joint: &JointFit| {
+            let numbers = [joint.lag_s, joint.dead_band_rad_s, joint.position_gain_1_s, joint.feed_forward];
+            numbers.iter().filter(|number| joint.model_holds && number.identified).count()
+        };
+        [self.fit.joints.iter().map(of).sum(), 4 * self.fit.joints.len()]
+    }
 }
 
 /// Whether something else than the plan was sent.

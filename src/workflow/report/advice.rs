@@ -1,6 +1,6 @@
 //! What to do about what a report found.
 
-use super::outcome::Report;
+use super::{Fault, outcome::Report};
 use crate::{
     fit::SPARSEST_S,
     replay::{JointReplay, Transition, Verdict},
@@ -57,6 +57,19 @@ pub enum Advice {
         /// When that is, s.
         time_s: f64,
     },
+    /// Something happened that comes before any start.
+    SeeTo(Fault),
+    /// The error is noise of the sensors.
+    LeaveIt {
+        /// Of the joint with the largest error: noise and RMS error.
+        noise: f64,
+        /// The same.
+        error: f64,
+        /// Whether it turns or slides.
+        kind: JointKind,
+    },
+    /// A fit says why no command can be made from the log.
+    NoCommand(String),
     /// No joint is asked to leave rest.
     RecordStarts,
     /// No command can be made from the log, because its plan is broken.
@@ -73,12 +86,17 @@ const OF_TOOL: [&str; 3] = ["x", "y", "z"];
 /// Lags below this are not worth a step, s.
 const SMALL_LAG_S: f64 = 0.01;
 
-/// What to do next.
+/// What to do next; of a machine with a fault nothing of its starts.
 pub fn advice(report: &Report) -> Vec<Advice> {
     let replay = &report.replay;
     let mut advice = Vec::new();
+    advice.extend(report.fault.clone().map(Advice::SeeTo));
     if !report.remarks.is_empty() {
         advice.push(Advice::ClearDoubts(report.remarks.as_slice().len()));
+    }
+    if report.fault.is_some() {
+        advice.push(Advice::Compare);
+        return advice;
     }
     let stuck = replay.joints.iter().filter(|joint| joint.unanswered_starts > 0);
     advice.extend(stuck.max_by_key(|joint| joint.unanswered_starts).map(|joint| Advice::FreeJoint {
@@ -98,8 +116,12 @@ pub fn advice(report: &Report) -> Vec<Advice> {
         |joint: &JointReplay| joint.kind == JointKind::Slides && OF_TOOL.contains(&joint.name.as_str());
     let tells = |joint: &JointReplay| !of_tool(joint) && joint.sample_interval_s <= SPARSEST_S;
     let could = sound && replay.joints.iter().any(tells);
-    let fits = could && report.broken.is_none();
-    if let Some((joint, lag_s)) = mostly_lag(report, worst.joint_kind) {
+    let fits = could && report.broken.is_none() && report.unfit.is_none();
+    let noise = report.only_noise();
+    if let Some(joint) = noise {
+        let (noise, error) = (joint.noise.sigma, joint.tracking_error.rms);
+        advice.push(Advice::LeaveIt { noise, error, kind: joint.kind });
+    } else if let Some((joint, lag_s)) = mostly_lag(report, worst.joint_kind) {
         advice.push(Advice::ShiftCommand { joint, lag_s, fits });
     } else if verdict == Some(Verdict::Elsewhere) {
         advice.extend(outside(report));
@@ -112,6 +134,8 @@ pub fn advice(report: &Report) -> Vec<Advice> {
         });
     }
     advice.extend(report.broken.clone().filter(|_| could).map(Advice::RecordWhole));
+    let unfit = report.unfit.clone().filter(|_| could && report.broken.is_none() && noise.is_none());
+    advice.extend(unfit.map(Advice::NoCommand));
     if report.gates.is_empty() {
         advice.push(Advice::SetLimits);
     }

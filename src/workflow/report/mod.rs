@@ -4,6 +4,7 @@ pub mod advice;
 mod analysis;
 mod document;
 mod failure;
+mod fault;
 mod findings;
 mod gates;
 mod identity;
@@ -18,6 +19,7 @@ pub use analysis::{Analysis, analyse};
 use analysis::{aligned, taken};
 pub use document::Document;
 pub use failure::ReportFailure;
+pub use fault::Fault;
 #[cfg(feature = "parquet")]
 pub(in crate::workflow) use findings::reported;
 pub use findings::{Findings, analysis_id, findings};
@@ -27,8 +29,8 @@ pub(crate) use identity::hash;
 pub use identity::{LogFile, log_files};
 pub use outcome::{Alignment, Report, Travel};
 pub use tool::Tool;
-use why::Ready;
 pub use why::{DelayModel, LateStart, Part, Why};
+use why::{Ready, Unready};
 
 use super::{
     carried::{Carried, PLAN, Schedule},
@@ -140,7 +142,12 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         None => Tool::of(arm, &pairs, &inputs.rules),
     };
     let explained = |ready: Ready| ready.why(&pairs, &replay).map_err(|error| error.to_string());
-    let why = model.map(|model| model.and_then(explained));
+    let unfit = match &model {
+        Some(Ok(ready)) => ready.unfit(),
+        Some(Err(Unready::Fit(why))) => Some(why.clone()),
+        _ => None,
+    };
+    let why = model.map(|model| model.map_err(Unready::message).and_then(explained));
     match broken {
         Some(Broken::Cut { begins: false, at_s, .. }) => remark_cut(at_s, &replay, &mut remarks),
         // Where the caller wants a part, its end is no news.
@@ -153,7 +160,10 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     let front = front(&carried, &mut remarks);
     let name = |path: &PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let named = |key: &str| recording.metadata.values().find_map(|entries| entries.get(key).cloned());
-    Ok(Report {
+    let stood_s = recording.stood_s;
+    let report = Report {
+        fault: None,
+        unfit,
         logs: inputs.logs.iter().filter_map(name).collect(),
         paths: inputs.logs.clone(),
         machine: named("machine"),
@@ -174,7 +184,8 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         signals: if inputs.with_signals { recording.signals } else { BTreeMap::new() },
         pairs,
         front,
-    })
+    };
+    Ok(Report { fault: Fault::of(&report, stood_s), ..report })
 }
 
 /// The pairs over the stretches asked for; those of equal stamps share them, as they did.

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{gates::GateResult, tool::Tool, why::Why};
+use super::{Fault, gates::GateResult, tool::Tool, why::Why};
 use crate::{
     log::{Command, SignalRole, SourceInfo},
     math::range,
@@ -60,6 +60,10 @@ pub struct Report {
     pub why: Option<Result<Why, String>>,
     /// The limits that were set, each with its outcome.
     pub gates: Vec<GateResult>,
+    /// What is to be seen to before any start.
+    pub fault: Option<Fault>,
+    /// Why no command can be made from it, as far as a fit was asked for and says so.
+    pub unfit: Option<String>,
     /// What was doubtful.
     pub remarks: Remarks,
     /// Each joint's error over the run, in the order of its joints.

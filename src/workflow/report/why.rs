@@ -7,8 +7,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    fit::{Fit, FitError, JointFit, Model, fit, predict},
+    fit::{Fit, FitError, JointFit, LEAST_SKILL, Model, fit, predict},
     log::{Recording, SignalRole},
+    math::range,
     replay::{Replay, Rules, Transition, replay},
     series::{Pair, Series, Track, align, local_quadratic},
     workflow::fit::observation,
@@ -80,6 +81,31 @@ pub(super) struct Ready {
     sent: Series,
 }
 
+/// Why there is no machine: it was not looked for, or a fit refuses the run.
+#[derive(Debug)]
+pub(super) enum Unready {
+    Long(String),
+    Fit(String),
+}
+
+impl Unready {
+    pub(super) fn message(self) -> String {
+        match self {
+            Self::Long(why) | Self::Fit(why) => why,
+        }
+    }
+
+    /// `moves`: a joint is sent through more than what the fit calls little.
+    fn refused(error: &FitError, moves: impl Fn(f64) -> bool) -> Self {
+        Self::Fit(match error {
+            FitError::NothingMoves { least_travel_rad, .. } if moves(*least_travel_rad) => {
+                "its motions are too short, or too often broken off by gaps, for a fit".to_owned()
+            }
+            error => error.to_string(),
+        })
+    }
+}
+
 /// What is short for a fit: joints times seconds.
 const SHORT_S: f64 = 4000.0;
 
@@ -96,7 +122,7 @@ impl DelayModel {
     }
 
     /// The machine for a run, before its tracks are given away.
-    pub(super) fn ready(&self, recording: &Recording) -> Option<Result<Ready, String>> {
+    pub(super) fn ready(&self, recording: &Recording) -> Option<Result<Ready, Unready>> {
         // A long run's tracks are not copied for nothing.
         if matches!(self, Self::None) {
             return None;
@@ -104,12 +130,18 @@ impl DelayModel {
         let span_s = recording.measured.span_s().map_or(0.0, |[from, to]| to - from);
         if matches!(self, Self::OfThisRunIfShort) && span_s * recording.measured.tracks.len() as f64 > SHORT_S
         {
-            return Some(Err(format!("a fit to {span_s:.0} s takes a while; `report --why` makes it")));
+            let why = format!("a fit to {span_s:.0} s takes a while; `report --why` makes it");
+            return Some(Err(Unready::Long(why)));
         }
         let observed = observation(recording);
         let (plan, sent) = (recording.planned.clone(), observed.sent.clone());
         let fit = if let Self::Known(fit) = self { Ok(Fit::clone(fit)) } else { fit(&[observed]) };
-        Some(fit.map(|fit| Ready { fit, plan, sent }).map_err(|error| error.to_string()))
+        let moves = |least: f64| {
+            let spans = sent.tracks.iter().map(|track| range(track.position().iter().copied()));
+            spans.map(|[low, high]| high - low).any(|span| span >= least)
+        };
+        let fit = fit.map_err(|error| Unready::refused(&error, moves));
+        Some(fit.map(|fit| Ready { fit, plan, sent }))
     }
 }
 
@@ -130,6 +162,12 @@ fn with_dead_band(model: &Model, times: f64) -> Model {
 }
 
 impl Ready {
+    /// Why no command can be made by this machine.
+    pub(super) fn unfit(&self) -> Option<String> {
+        let none = !self.fit.joints.iter().any(JointFit::trusted);
+        none.then(|| format!("no joint is predicted well enough (a held-out R2 of {LEAST_SKILL} is needed)"))
+    }
+
     pub(super) fn why(&self, pairs: &[Pair], found: &Replay) -> Result<Why, FitError> {
         Why::of(&self.fit, &self.plan, &self.sent, pairs, found)
     }

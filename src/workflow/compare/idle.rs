@@ -1,0 +1,51 @@
+//! Comparisons that say nothing of a change.
+
+use super::{Comparison, Verdict};
+use crate::remark::Code;
+
+/// Why a comparison says nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Idle {
+    /// No start of one side has a counterpart in the other.
+    NoPair,
+    /// Both sides are one run.
+    SameRun,
+}
+
+impl Comparison {
+    /// Why it says nothing of a change; `None` if it does.
+    pub fn idle(&self) -> Option<Idle> {
+        let same = || self.remarks.as_slice().iter().any(|remark| remark.code == Code::SameRun);
+        match self.verdict {
+            _ if self.pairs.is_empty() => Some(Idle::NoPair),
+            Verdict::Equal if same() => Some(Idle::SameRun),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{render::compare::page, workflow::compare};
+
+    #[test]
+    fn unlike_runs_and_one_run_twice_are_no_comparison() {
+        let compared = |after: &str| {
+            let log = |name: &str| {
+                vec![std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name)]
+            };
+            let (before, after) = (log("task-1-run.mcap"), log(after));
+            compare::run(&compare::Inputs { before, after, ..compare::Inputs::default() }).unwrap()
+        };
+        let twice = compared("task-1-run.mcap");
+        assert_eq!(twice.idle(), Some(Idle::SameRun));
+        assert!(!page(&twice, 60).contains("Nothing changed"));
+        let mut other = compared("precompensated-run.mcap");
+        assert_eq!(other.idle(), None);
+        other.pairs.clear();
+        assert_eq!(other.idle(), Some(Idle::NoPair));
+        let page = page(&other, 60);
+        assert!(page.contains("Not comparable") && !page.contains("Rms error, whole run"));
+    }
+}

@@ -1,0 +1,123 @@
+//! What happened to a machine that makes the figures of its starts no matter, and why nothing can be learnt from a run.
+
+use super::outcome::Report;
+use crate::replay::{JointReplay, Transition};
+
+/// What is to be seen to before any start.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Fault {
+    /// The machine stood while its plan went on.
+    Stopped {
+        /// From when, s.
+        from_s: f64,
+        /// Until when, s; `None` if to the end.
+        to_s: Option<f64>,
+    },
+    /// Joints that never move although their plans do.
+    Dead {
+        /// The joints.
+        joints: Vec<String>,
+        /// Planned starts of the dead ones.
+        starts: usize,
+    },
+}
+
+/// A joint with so much noise, by its RMS error, has no error that a command could take away.
+const HIDES: f64 = 0.5;
+
+impl Fault {
+    /// `stood_s`: from when to when the machine stood.
+    pub(super) fn of(report: &Report, stood_s: Option<[f64; 2]>) -> Option<Self> {
+        if let Some([from_s, to_s]) = stood_s {
+            return Some(Self::Stopped { from_s, to_s: Some(to_s).filter(|to_s| to_s.is_finite()) });
+        }
+        let joints = report.replay.joints.iter();
+        let dead: Vec<&JointReplay> = joints.filter(|joint| report.stands(joint)).collect();
+        (!dead.is_empty()).then(|| Self::Dead {
+            joints: dead.iter().map(|joint| joint.name.clone()).collect(),
+            starts: dead.iter().map(|joint| joint.starts).sum(),
+        })
+    }
+
+    /// Whether it explains what a start looks like.
+    fn explains(&self, start: &Transition) -> bool {
+        match self {
+            Self::Stopped { from_s, to_s } => {
+                start.window_s[1] > *from_s && to_s.is_none_or(|to_s| start.window_s[0] < to_s)
+            }
+            Self::Dead { joints, .. } => joints.contains(&start.joint),
+        }
+    }
+}
+
+impl Report {
+    /// Whether a joint does not move although its plan does.
+    pub fn stands(&self, joint: &JointReplay) -> bool {
+        joint.plan_moves && !joint.moves && joint.starts > 0 && self.travel(joint).rests
+    }
+
+    /// The worst start that is not what [`Self::fault`] makes it.
+    pub fn worst(&self) -> Option<&Transition> {
+        let explained = |start: &&Transition| self.fault.as_ref().is_some_and(|fault| fault.explains(start));
+        self.replay.worst_first().into_iter().find(|start| !explained(start))
+    }
+
+    /// The joint with the largest error, where that of all is hardly more than the noise of their sensors.
+    pub fn only_noise(&self) -> Option<&JointReplay> {
+        let joints = &self.replay.joints;
+        let noisy = joints.iter().all(|joint| joint.noise.sigma >= HIDES * joint.tracking_error.rms);
+        let largest = joints.iter().max_by(|a, b| a.tracking_error.rms.total_cmp(&b.tracking_error.rms));
+        largest.filter(|_| noisy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::workflow::report::{
+        Inputs,
+        advice::{Advice, advice},
+        run,
+    };
+
+    fn report() -> Report {
+        let log = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs/panel-install.mcap");
+        run(&Inputs { logs: vec![log], ..Inputs::default() }).unwrap()
+    }
+
+    #[test]
+    fn the_worst_start_is_none_of_a_dead_joint_or_of_a_machine_that_stands() {
+        let mut found = report();
+        let worst = found.worst().unwrap().clone();
+        assert_eq!(Fault::of(&found, None), None);
+        found.fault = Fault::of(&found, Some([worst.window_s[0] + 0.1, f64::INFINITY]));
+        assert!(found.worst().is_none_or(|start| start.window_s[1] <= worst.window_s[0] + 0.1));
+        let first = advice(&found).remove(0);
+        assert!(matches!(&first, Advice::SeeTo(Fault::Stopped { to_s: None, .. })), "{first:?}");
+        let joint = found.replay.joints.iter_mut().find(|joint| joint.name == worst.joint).unwrap();
+        joint.moves = false;
+        let pair = found.pairs.iter_mut().find(|pair| pair.name == worst.joint).unwrap();
+        pair.measured.fill(0.0);
+        found.fault = Fault::of(&found, None);
+        assert!(matches!(&found.fault, Some(Fault::Dead { joints, .. }) if *joints == [worst.joint.clone()]));
+        assert!(found.worst().is_some_and(|start| start.joint != worst.joint));
+        let steps = advice(&found);
+        let offered = |step: &Advice| matches!(step, Advice::EaseStarts { .. } | Advice::ShiftCommand { .. });
+        assert!(!steps.iter().any(offered), "{steps:?}");
+    }
+
+    #[test]
+    fn a_run_whose_error_is_noise_has_nothing_to_correct_and_one_that_cannot_be_fitted_says_why() {
+        let mut found = report();
+        found.unfit = Some("its motions are too short".to_owned());
+        let steps = advice(&found);
+        assert!(steps.contains(&Advice::NoCommand("its motions are too short".to_owned())), "{steps:?}");
+        assert!(steps.iter().any(|step| matches!(step, Advice::EaseStarts { fits: false, .. })), "{steps:?}");
+        assert_eq!(found.only_noise(), None);
+        for joint in &mut found.replay.joints {
+            joint.noise.sigma = joint.tracking_error.rms;
+        }
+        let steps = advice(&found);
+        assert!(matches!(&steps[..], [.., Advice::LeaveIt { .. }, Advice::SetLimits, _]), "{steps:?}");
+    }
+}
