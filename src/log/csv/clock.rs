@@ -13,9 +13,8 @@ use super::{
     number::{nanoseconds, number},
     order::doubt,
     rows::Rows,
-    si::{FARTHEST_DEG, FARTHEST_RAD},
     time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
-    unit::{ARCHIVE_DAY, Measure, parse_unit},
+    unit::{ARCHIVE_DAY, FARTHEST_DEG, FARTHEST_RAD, Measure, parse_unit},
 };
 use crate::{
     math::range,

@@ -6,7 +6,7 @@ use super::{
     column::find,
     head::Head,
     label::Label,
-    layout::option,
+    options::option,
     read::{Cells, Column},
 };
 
@@ -153,8 +153,9 @@ mod tests {
             angle_unit: Some(AngleUnit::Degrees),
             ..CsvOptions::default()
         };
-        let rows: String = (0..20).map(|k| format!("{:.2},{k},1\n", 0.02 * f64::from(k))).collect();
-        let run = read_csv_bytes("a.csv", format!("t,Output,Error\n{rows}").as_bytes(), &options).unwrap();
+        let row = |table: String, k: u32| format!("{table}{:.2},{k},1\n", 0.02 * f64::from(k));
+        let table = (0..20).fold("t,Output,Error\n".to_owned(), row);
+        let run = read_csv_bytes("a.csv", table.as_bytes(), &options).unwrap();
         assert_eq!(run.understood.columns.len(), 2, "{:?}", run.understood);
     }
 }

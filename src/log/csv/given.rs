@@ -1,6 +1,6 @@
 //! Options of an import as the line that gave them, so that the next line can repeat them.
 
-use super::{AngleUnit, Columns, CsvOptions, layout::option};
+use super::{AngleUnit, Columns, CsvOptions, options::option};
 
 impl CsvOptions {
     /// Each option that was given and its value; none of a flag. An option that may come several times does.

@@ -9,6 +9,7 @@ use super::{
     head::Head,
     label::{Label, PLACE, QUATERNION, is_place, label},
     offered::offered,
+    options::option,
     pairing::{Draft, Partners, by_last_part, numbered_apart, plan_beside_measured, without_shared_words},
     repeats::drop_repeats,
     unit::{Measure, Unit},
@@ -42,32 +43,6 @@ pub(super) struct Layout {
     pub(super) joints: Vec<String>,
     pub(super) uses: Vec<Use>,
     pub(super) interfaces: Vec<Interface>,
-}
-
-/// The option that names columns of a role and quantity.
-pub(super) fn option(role: Role, quantity: Quantity) -> &'static str {
-    match (role, quantity) {
-        (Role::Planned, Quantity::Position) => "--planned",
-        (Role::Measured, Quantity::Position) => "--measured",
-        (Role::Command, Quantity::Position) => "--command",
-        (Role::Planned, Quantity::Velocity) => "--planned-velocity",
-        (Role::Measured, Quantity::Velocity) => "--measured-velocity",
-        (Role::Command, Quantity::Velocity) => "--command-velocity",
-    }
-}
-
-/// Such as "planned position".
-pub(super) fn describe(role: Role, quantity: Quantity) -> String {
-    let role = match role {
-        Role::Planned => "planned",
-        Role::Measured => "measured",
-        Role::Command => "command",
-    };
-    let quantity = match quantity {
-        Quantity::Position => "position",
-        Quantity::Velocity => "velocity",
-    };
-    format!("{role} {quantity}")
 }
 
 pub(super) fn lay_out(

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     AngleUnit, Columns, CsvError, CsvOptions, LengthUnit, Quantity, Role, Separator, Understood,
-    layout::describe, order::order_of,
+    options::describe, order::order_of,
 };
 use crate::input_file;
 

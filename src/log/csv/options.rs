@@ -185,3 +185,29 @@ impl CsvOptions {
         Ok(())
     }
 }
+
+/// The option that names columns of a role and quantity.
+pub(super) fn option(role: Role, quantity: Quantity) -> &'static str {
+    match (role, quantity) {
+        (Role::Planned, Quantity::Position) => "--planned",
+        (Role::Measured, Quantity::Position) => "--measured",
+        (Role::Command, Quantity::Position) => "--command",
+        (Role::Planned, Quantity::Velocity) => "--planned-velocity",
+        (Role::Measured, Quantity::Velocity) => "--measured-velocity",
+        (Role::Command, Quantity::Velocity) => "--command-velocity",
+    }
+}
+
+/// Such as "planned position".
+pub(super) fn describe(role: Role, quantity: Quantity) -> String {
+    let role = match role {
+        Role::Planned => "planned",
+        Role::Measured => "measured",
+        Role::Command => "command",
+    };
+    let quantity = match quantity {
+        Quantity::Position => "position",
+        Quantity::Velocity => "velocity",
+    };
+    format!("{role} {quantity}")
+}

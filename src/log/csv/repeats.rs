@@ -6,8 +6,8 @@ use super::{
     CsvError, Role, Separator,
     head::Head,
     label::Label,
-    layout::{describe, option},
     number::number,
+    options::{describe, option},
     pairing::Draft,
     rows::Rows,
     unit::Unit,
@@ -52,17 +52,14 @@ pub(super) fn drop_repeats(
             }
             Rowwise::Differ(_) => Some(Err(())),
         };
-        let gives_way = match by_word.map(Ok).or_else(by_rows).transpose() {
-            Ok(gives_way) => gives_way,
-            Err(()) => {
-                let shown = |column: usize| format!("{:?} (#{})", head.names[column], column + 1);
-                return Err(CsvError::Twice {
-                    columns: format!("{} and {}", shown(first.column), shown(draft.column)),
-                    what: describe(draft.role, draft.quantity),
-                    joint: draft.joint,
-                    option: option(draft.role, draft.quantity),
-                });
-            }
+        let Ok(gives_way) = by_word.map(Ok).or_else(by_rows).transpose() else {
+            let shown = |column: usize| format!("{:?} (#{})", head.names[column], column + 1);
+            return Err(CsvError::Twice {
+                columns: format!("{} and {}", shown(first.column), shown(draft.column)),
+                what: describe(draft.role, draft.quantity),
+                joint: draft.joint,
+                option: option(draft.role, draft.quantity),
+            });
         };
         if let Some((before, why)) = gives_way {
             let [used, left] =

@@ -6,7 +6,7 @@ use super::{
     label::Label,
     layout::{Layout, Use},
     read::Cells,
-    unit::{DEGREE, Measure, RADIAN, UNITLESS, Unit, parse_unit},
+    unit::{DEGREE, FARTHEST_DEG, FARTHEST_RAD, Measure, RADIAN, UNITLESS, Unit, parse_unit},
 };
 use crate::{
     remark::{Code, Remarks},
@@ -21,11 +21,6 @@ pub(super) struct Settled {
     pub(super) unit: Option<Unit>,
     pub(super) from: &'static str,
 }
-
-/// Joints with end stops stay within one and a half turns to either side, rad.
-pub(super) const FARTHEST_RAD: f64 = 3.0 * std::f64::consts::PI;
-/// Joints of arms turn no farther; a number above is of other steps, deg.
-pub(super) const FARTHEST_DEG: f64 = 1080.0;
 
 /// Converts the columns in use; also how each joint moves, `[joints]`.
 pub(super) fn to_si(

@@ -3,11 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    dialect::Dialect,
-    head::Head,
-    layout::{Layout, describe},
-    read::Cells,
-    si::Settled,
+    dialect::Dialect, head::Head, layout::Layout, options::describe, read::Cells, si::Settled,
     time::TimeSource,
 };
 use crate::{

@@ -6,6 +6,11 @@ use serde::Serialize;
 
 use crate::units::DEGREE_RAD;
 
+/// Joints with end stops stay within one and a half turns to either side, rad.
+pub(super) const FARTHEST_RAD: f64 = 3.0 * std::f64::consts::PI;
+/// Joints of arms turn no farther; a number above is of other steps, deg.
+pub(super) const FARTHEST_DEG: f64 = 1080.0;
+
 /// The quantity that a unit measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
