@@ -118,8 +118,7 @@ pub(super) fn assemble(
         repeated::of_command(&mut command.series, &mut remarks);
         held::of_command(command, sides[1].1, &mut remarks);
     }
-    let one_clock = options.measured_delay_ns == Some(0);
-    let stood_s = spoilt::of_sides([sides[0].1, sides[1].1], command.as_ref(), one_clock, &mut remarks);
+    let stood_s = spoilt::of_sides([sides[0].1, sides[1].1], command.as_ref(), options, &mut remarks);
     quality::of_pairs([sides[0].1, sides[1].1], options, assembly.kinds.stated(), &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
     unlike::of_sides(sides[0].1, sides[1].1, &mut remarks);

@@ -2,6 +2,7 @@
 
 use super::{other_time, recording::Command, stopped};
 use crate::{
+    log::options::ReadOptions,
     remark::{Code, Remarks},
     series::Series,
 };
@@ -12,9 +13,10 @@ use crate::{
 pub(super) fn of_sides(
     [planned, measured]: [&Series; 2],
     command: Option<&Command>,
-    one_clock: bool,
+    options: &ReadOptions,
     remarks: &mut Remarks,
 ) -> Option<[f64; 2]> {
+    let one_clock = options.measured_delay_ns == Some(0);
     let mut stops = stopped::stops(planned, measured);
     // What was sent must go on, too, or stand itself while the plan goes on.
     if let Some(Command { series: sent, .. }) = command

@@ -10,6 +10,7 @@ use crate::{
     render::kit::{Figure, page::chart},
     workflow::{
         compare,
+        fit::Fitted,
         report::{Inputs, Report, run},
     },
 };
@@ -96,6 +97,12 @@ fn a_spike_of_one_sample_stays_in_the_plot_of_its_joint() {
     let spike = chart::rounded(crate::units::degrees_from_radians(SPIKE_RAD));
     assert!(page.contains(&format!("{spike}")), "{spike}");
     assert!(page.len() < 6_000_000, "{}", page.len());
+    assert!(page.contains("samples drawn, most at the worst starts") && page.contains("--from, --to"));
+    let worst = report.replay.worst_first()[0];
+    let pair = report.pairs.iter().find(|pair| pair.name == worst.joint).unwrap();
+    let [from, to] = worst.window_s.map(|at_s| pair.t_s.partition_point(|t_s| *t_s < at_s));
+    let parts = super::joints::windows(pair, &report.replay);
+    assert!(parts.iter().any(|part| part.start < from && part.end >= to), "{parts:?}");
 }
 
 #[test]
@@ -170,6 +177,22 @@ fn a_fit_shows_its_numbers_intervals_and_what_was_never_reached() {
     };
     let fit =
         Fit { joints: vec![joint], left_out: vec![], peak_margin: 1.25, margin_starts: 12, shared: None };
+    let mut fitted = Fitted {
+        fit: fit.clone(),
+        held_out: vec![],
+        torques: vec![],
+        runs: vec![],
+        again: vec![],
+        corrected: false,
+        not_again: None,
+        remarks: crate::remark::Remarks::default(),
+    };
+    assert_eq!(fitted.known(), [4, 4]);
+    fitted.fit.joints[0].feed_forward.identified = false;
+    assert_eq!(fitted.known(), [3, 4]);
+    fitted.fit.joints[0].model_holds = false;
+    let page = crate::render::fit::page(&fitted, None);
+    assert!(page.contains("0 of 4"), "no number of a model that does not hold is known");
     let page = report_page("a", &report("gaps.mcap"), Some(&fit), 60, &[]);
     for text in ["Fitted machine", "200 (180..220)", "&gt;= 14.3", "0.88"] {
         assert!(page.contains(text), "{text}");
