@@ -143,13 +143,14 @@ pub(super) fn delay(
         return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     };
     let blind_s = blind_s(pair, signals, (planned, planned_s), (motion, onset.at_s));
-    // One that turns before its plan leaves rest swings back from its last motion.
-    let turned = motion.reversal && !planned.reversal && motion.start_s + blind_s < planned_s;
-    if turned || swings(signals, (planned, planned_s), motion) {
+    if swings(signals, (planned, planned_s), motion) {
         return Delay { method: OnsetMethod::Fit, planned_s, measured_s: None, interval_s: None };
     }
     if motion.reversal {
-        return reversal(pair, signals, (planned, planned_s), motion, blind_s, rules);
+        let found = reversal(pair, signals, (planned, planned_s), motion, blind_s, rules);
+        // One that surely turns before its plan leaves rest swings back from its last motion.
+        let swung = !planned.reversal && found.interval_s.is_some_and(|[_, latest_s]| latest_s < 0.0);
+        return if swung { Delay { measured_s: None, interval_s: None, ..found } } else { found };
     }
     let (early_s, late_s) = (planned_s - asked.interval_s[0], asked.interval_s[1] - planned_s);
     let onset = unshaken(pair, signals, motion, onset, planned_s, rules).unwrap_or(onset);

@@ -251,7 +251,8 @@ mod tests {
                 q
             };
             let found = transitions(plan, swings);
-            let early = |one: &&Transition| one.onset_delay_s.is_some_and(|delay_s| delay_s < -0.03);
+            let early =
+                |one: &&Transition| one.onset_delay_interval_s.is_some_and(|[_, latest_s]| latest_s < 0.0);
             assert_eq!(found.iter().find(early), None, "{again_s}");
         }
     }

@@ -17,8 +17,10 @@ use crate::remark::{Code, Remarks};
 /// Words that say plan or measurement where nothing else does.
 const SECOND: [&str; 6] = ["estimate", "pfb", "fdb", "pcmd", "req", "dmd"];
 
-/// A set value that the profile of a drive leads to goes so many times as far from row to row as the profile.
+/// A set value that the profile of a drive leads to goes so many times as far from row to row as the profile, and both go as far in
+/// all but for this share.
 const STEPS: f64 = 5.0;
+const AS_FAR: f64 = 0.2;
 
 /// Two columns for one thing are an error, unless they say the same, or one says so by a word of these, or one is the profile
 /// that leads to the set values of the other.
@@ -47,10 +49,10 @@ pub(super) fn drop_repeats(
         let by_rows = || match rows_of((text, separator), head, columns) {
             Rowwise::Same => None,
             _ if other_unit() => None,
-            Rowwise::Differ([a, b]) if draft.role == Role::Planned && (a > STEPS * b || b > STEPS * a) => {
-                Some(Ok((a > b, "is of set values that step, which the profile leads to in")))
+            Rowwise::Profile(first_steps) if draft.role == Role::Planned => {
+                Some(Ok((first_steps, "is of set values that step, which the profile leads to in")))
             }
-            Rowwise::Differ(_) => Some(Err(())),
+            Rowwise::Profile(_) | Rowwise::Differ => Some(Err(())),
         };
         let Ok(gives_way) = by_word.map(Ok).or_else(by_rows).transpose() else {
             let shown = |column: usize| format!("{:?} (#{})", head.names[column], column + 1);
@@ -106,8 +108,9 @@ fn in_another_unit(head: &Head, labels: &[Label], columns: [usize; 2]) -> bool {
 /// How two columns are beside each other.
 enum Rowwise {
     Same,
-    /// The farthest that each goes from row to row.
-    Differ([f64; 2]),
+    /// One steps to where the other goes by and by: whether that is the first.
+    Profile(bool),
+    Differ,
 }
 
 /// By all rows of the table.
@@ -115,6 +118,7 @@ fn rows_of((text, separator): (&[u8], Separator), head: &Head, columns: [usize; 
     let mut rows = Rows::new(text, separator);
     let mut record = ByteRecord::new();
     let (mut differ, mut last, mut farthest) = (false, [f64::NAN; 2], [0.0_f64; 2]);
+    let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     while let Some(line) = rows.next(&mut record) {
         if line < head.first_line {
             continue;
@@ -125,9 +129,17 @@ fn rows_of((text, separator): (&[u8], Separator), head: &Head, columns: [usize; 
             let Some(value) = number(cell, false).or_else(|| number(cell, true)) else { continue };
             farthest[k] = farthest[k].max((value - last[k]).abs());
             last[k] = value;
+            range[k] = [range[k][0].min(value), range[k][1].max(value)];
         }
     }
-    if differ { Rowwise::Differ(farthest) } else { Rowwise::Same }
+    let travel = range.map(|[lowest, highest]| highest - lowest);
+    let as_far = (travel[0] - travel[1]).abs() <= AS_FAR * travel[0].max(travel[1]);
+    let [a, b] = farthest;
+    match differ {
+        false => Rowwise::Same,
+        true if as_far && (a > STEPS * b || b > STEPS * a) => Rowwise::Profile(a > b),
+        true => Rowwise::Differ,
+    }
 }
 
 #[cfg(test)]

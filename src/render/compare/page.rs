@@ -276,3 +276,24 @@ fn over_time(joint: &str, before: &Pair, after: &Pair, offset_s: f64) -> Chart {
         ..Chart::default()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::workflow::compare::{Inputs, run};
+
+    #[test]
+    fn the_page_of_runs_that_are_no_comparison_says_so() {
+        let log = |name: &str| {
+            vec![std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("sample-logs").join(name)]
+        };
+        let compared = |after: &str| {
+            run(&Inputs { before: log("task-1-run.mcap"), after: log(after), ..Inputs::default() }).unwrap()
+        };
+        assert!(!page(&compared("task-1-run.mcap"), 60).contains("Nothing changed"));
+        let mut other = compared("precompensated-run.mcap");
+        other.pairs.clear();
+        let page = page(&other, 60);
+        assert!(page.contains("Not comparable") && !page.contains("Rms error, whole run"));
+    }
+}

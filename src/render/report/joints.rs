@@ -1,10 +1,14 @@
 //! Joints over the whole run: planned, measured, error.
 
-use std::{collections::BTreeMap, ops::Range};
+use std::collections::BTreeMap;
 
 use maud::{Markup, html};
 
-use super::{signals, tables::lag, tiles::MOST as TILES};
+use super::{
+    signals,
+    tables::lag,
+    windows::{EACH, windows},
+};
 use crate::{
     render::{
         kit::{
@@ -25,12 +29,6 @@ use crate::{
 
 /// Places of a series at most, nearly.
 const MOST: usize = 3000;
-/// Of the worst starts of a joint so many places more in each window, nearly, and in all.
-pub(super) const EACH: usize = 400;
-const PARTS: usize = 12_000;
-/// Shown before a start, s.
-const BEFORE_S: f64 = 0.5;
-
 /// A plot for each joint.
 pub(super) fn joints(report: &Report, plots: &mut Plots) -> Markup {
     let mut charts = joint_charts(report);
@@ -101,21 +99,6 @@ fn joint_chart(pair: &Pair, replay: &Replay, transitions: &[&Transition]) -> Cha
         height: 270,
         size: Size::Wide,
     }
-}
-
-/// Samples of a joint in the windows of starts that are drawn whole: the worst of all joints, which a click shows, then its own.
-pub(super) fn windows(pair: &Pair, replay: &Replay) -> Vec<Range<usize>> {
-    let worst = replay.worst_first();
-    let own = worst.iter().filter(|start| start.joint == pair.name);
-    let at = |time_s: f64| pair.t_s.partition_point(|t_s| *t_s < time_s);
-    let window = |start: &&Transition| at(start.window_s[0] - BEFORE_S)..at(start.window_s[1]);
-    let mut left = PARTS;
-    let fits = |part: &Range<usize>| {
-        let enough = left > 0;
-        left = left.saturating_sub(part.len().min(EACH));
-        enough
-    };
-    worst.iter().take(TILES).chain(own).map(window).take_while(fits).collect()
 }
 
 /// What a plot that leaves samples out says of them.

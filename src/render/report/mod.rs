@@ -21,6 +21,7 @@ mod together;
 mod tool;
 mod tool_page;
 mod why;
+mod windows;
 
 pub(crate) use answer::answer;
 pub(crate) use csv::csv;

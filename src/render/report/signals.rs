@@ -1,6 +1,6 @@
 //! What else was logged of a joint, under its plot on the same times: speeds, command, valve, pressures.
 
-use super::joints::{EACH, windows};
+use super::windows::{EACH, windows};
 use crate::{
     log::SignalRole,
     render::{

@@ -101,7 +101,7 @@ fn a_spike_of_one_sample_stays_in_the_plot_of_its_joint() {
     let worst = report.replay.worst_first()[0];
     let pair = report.pairs.iter().find(|pair| pair.name == worst.joint).unwrap();
     let [from, to] = worst.window_s.map(|at_s| pair.t_s.partition_point(|t_s| *t_s < at_s));
-    let parts = super::joints::windows(pair, &report.replay);
+    let parts = super::windows::windows(pair, &report.replay);
     assert!(parts.iter().any(|part| part.start < from && part.end >= to), "{parts:?}");
 }
 

@@ -1,7 +1,5 @@
 //! What holds for every command: made from random tasks, plans, answers, models and gains.
 
-use std::ops::ControlFlow;
-
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 
@@ -13,11 +11,10 @@ use crate::{
     arm::Arm,
     fit::{Fit, Learning, Observation, STEP_S, Trial, fit},
     math::State,
-    moea::Budget,
-    plan::{BETWEEN, Interpolation, Limit, Margin, PlanEvaluation, Search, Setup, search, smoother},
+    plan::{BETWEEN, Interpolation, Limit, Margin, PlanEvaluation, Setup},
     rng::{Stream, stream},
     series::{Series, Track},
-    task::{Ceilings, KeyPoint, Objective, Place, Task},
+    task::{KeyPoint, Place, Task},
     threads,
     workflow::{
         carried::{
@@ -311,35 +308,4 @@ fn no_command_breaks_a_limit_a_rule_of_the_controller_or_the_end_of_its_plan() {
     );
     assert!(broken.is_empty(), "{broken:#?}");
     assert!(corrected as u64 > count() / 2, "{corrected}");
-}
-
-#[test]
-fn where_a_limit_leaves_the_whole_of_a_correction_little_a_part_of_it_is_sent() {
-    // A plan that lies at the limit of the tool's speed for long.
-    let mut task = Task { tool_speed_m_s: 0.5, times_s: None, ..Task::parse(TASK).unwrap() };
-    for limits in &mut task.limits {
-        limits.velocity_rad_s *= 10.0;
-        limits.acceleration_rad_s2 *= 10.0;
-        limits.jerk_rad_s3 *= 10.0;
-    }
-    let setup = Setup::new(&task, Arm::sample().unwrap()).unwrap();
-    let settings = Search { budget: Budget::Evaluations(1000), ..Search::default() };
-    let found = search(&setup, &settings, |_| ControlFlow::Continue(())).unwrap();
-    let ceilings = Ceilings::NONE.with(Objective::Duration, found.front[0].objectives[Objective::Duration]);
-    let shape = smoother(&setup, &found.front[0], &ceilings, None).unwrap().evaluation;
-    let motion = setup.motion_through(&shape.times_s, &shape.via).unwrap();
-    let plan = sampled(&setup, &motion).unwrap();
-    let late = |track: &Track| {
-        let position = track.t_s().iter().map(|t_s| track.held_at(t_s - 0.4).position).collect();
-        Track::new(track.name(), track.t_s(), position, &[]).unwrap()
-    };
-    let measured = Series { tracks: plan.tracks.iter().map(late).collect() };
-    let fit = machine(&plan, &mut stream(0, Stream::SensorNoise));
-    let subject = Subject::new(&plan, Some((motion, PLAN_LEAD_S)), Some(&setup));
-    let trials = [Trial { sent: &plan, measured: &measured }];
-    let command = commanded(&fit, &subject, &trials, Learning::default()).unwrap();
-    let shares: Vec<f64> = command.joints.iter().map(|joint| joint.share).collect();
-    let (step, limit) = command.step.unwrap_or_else(|| panic!("{shares:?}"));
-    assert!(step < 1.0 && limit == Limit::ToolSpeed, "{step} {limit:?}");
-    assert!(shares.iter().all(|share| step * share > 0.0), "{step} {shares:?}");
 }

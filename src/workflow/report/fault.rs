@@ -1,26 +1,7 @@
 //! What happened to a machine that makes the figures of its starts no matter, and why nothing can be learnt from a run.
 
-use super::outcome::Report;
+use super::outcome::{Fault, Report};
 use crate::replay::{JointReplay, Transition};
-
-/// What is to be seen to before any start.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Fault {
-    /// The machine stood while its plan went on.
-    Stopped {
-        /// From when, s.
-        from_s: f64,
-        /// Until when, s; `None` if to the end.
-        to_s: Option<f64>,
-    },
-    /// Joints that never move although their plans do.
-    Dead {
-        /// The joints.
-        joints: Vec<String>,
-        /// Planned starts of the dead ones.
-        starts: usize,
-    },
-}
 
 /// A joint with so much noise, by its RMS error, has no error that a command could take away.
 const HIDES: f64 = 0.5;

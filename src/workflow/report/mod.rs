@@ -19,7 +19,6 @@ pub use analysis::{Analysis, analyse};
 use analysis::{aligned, taken};
 pub use document::Document;
 pub use failure::ReportFailure;
-pub use fault::Fault;
 #[cfg(feature = "parquet")]
 pub(in crate::workflow) use findings::reported;
 pub use findings::{Findings, analysis_id, findings};
@@ -27,7 +26,7 @@ pub use gates::{GateResult, Gates};
 #[cfg(feature = "parquet")]
 pub(crate) use identity::hash;
 pub use identity::{LogFile, log_files};
-pub use outcome::{Alignment, Report, Travel};
+pub use outcome::{Alignment, Fault, Report, Travel};
 pub use tool::Tool;
 pub use why::{DelayModel, LateStart, Part, Why};
 use why::{Ready, Unready};

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Fault, gates::GateResult, tool::Tool, why::Why};
+use super::{gates::GateResult, tool::Tool, why::Why};
 use crate::{
     log::{Command, SignalRole, SourceInfo},
     math::range,
@@ -29,6 +29,25 @@ pub struct Alignment {
     pub unmatched: usize,
     /// Continuous stretches.
     pub segments: usize,
+}
+
+/// What is to be seen to before any start.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Fault {
+    /// The machine stood while its plan went on.
+    Stopped {
+        /// From when, s.
+        from_s: f64,
+        /// Until when, s; `None` if to the end.
+        to_s: Option<f64>,
+    },
+    /// Joints that never move although their plans do.
+    Dead {
+        /// The joints.
+        joints: Vec<String>,
+        /// Planned starts of the dead ones.
+        starts: usize,
+    },
 }
 
 /// A report, before it is rendered.

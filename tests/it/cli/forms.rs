@@ -382,7 +382,7 @@ fn a_table_without_names_is_told_the_line_that_names_columns_by_number() {
     assert!(line.contains("--time '#2' --planned 'J1=#1' --measured 'J1=#3'"), "{error}");
     assert!(error.contains("#2 rises from row to row as a time does"), "{error}");
     let line = line.replace("J1=#3", "J1=#4").replace("J1=#1", "J1=#3").replace('\'', "");
-    let (code, text, error) = said(&hydrotrace(folder.path(), &line[11..].replace("-o", "--degrees -o")));
+    let (code, text, error) = said(&hydrotrace(folder.path(), &line[11..]));
     assert!(code != 1 && text.contains("one joint, 4.98 s at 50.0 Hz"), "{line} {text}{error}");
     let (line, error) = paste(&rows(|_, p, m| format!("{p:.4},{m:.4}\n")));
     assert!(line.contains("--rate HZ --planned 'J1=#1' --measured 'J1=#2'"), "{error}");
