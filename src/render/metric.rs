@@ -93,7 +93,7 @@ impl Units {
 
     /// A mean over all joints, with its unit; of both kinds no unit of one is true.
     pub(super) fn mean(self, value: f64) -> String {
-        self.0.map_or_else(|| format!("{value:.4} rad and m"), |kind| position(kind, value))
+        self.0.map_or_else(|| format!("{value:.4} (rad, m)"), |kind| position(kind, value))
     }
 
     /// The number of it alone.
@@ -103,7 +103,7 @@ impl Units {
 
     /// The heading of such numbers.
     pub(super) fn mean_heading(self, heading: &str) -> String {
-        if self.mixed() { format!("{heading} rad and m") } else { self.heading(heading, Dimension::Position) }
+        if self.mixed() { format!("{heading} (rad, m)") } else { self.heading(heading, Dimension::Position) }
     }
 
     /// `peak deg`.

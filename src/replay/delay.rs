@@ -127,6 +127,8 @@ fn along(motion: &Motion, value: f64) -> f64 {
 
 /// A joint that covers this share of the planned travel did not rest.
 const WENT_ALONG: f64 = 0.4;
+/// A joint that turns before its plan leaves rest by more than this, s, its whole interval, swings back; less is a lead.
+const SURELY_EARLY_S: f64 = 0.15;
 /// That is asked of a joint whose whole interval is later than this, s.
 const SURELY_LATE_S: f64 = 0.1;
 
@@ -149,7 +151,8 @@ pub(super) fn delay(
     if motion.reversal {
         let found = reversal(pair, signals, (planned, planned_s), motion, blind_s, rules);
         // One that surely turns before its plan leaves rest swings back from its last motion.
-        let swung = !planned.reversal && found.interval_s.is_some_and(|[_, latest_s]| latest_s < 0.0);
+        let swung =
+            !planned.reversal && found.interval_s.is_some_and(|[_, latest_s]| latest_s < -SURELY_EARLY_S);
         return if swung { Delay { measured_s: None, interval_s: None, ..found } } else { found };
     }
     let (early_s, late_s) = (planned_s - asked.interval_s[0], asked.interval_s[1] - planned_s);

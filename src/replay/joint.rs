@@ -252,7 +252,7 @@ mod tests {
             };
             let found = transitions(plan, swings);
             let early =
-                |one: &&Transition| one.onset_delay_interval_s.is_some_and(|[_, latest_s]| latest_s < 0.0);
+                |one: &&Transition| one.onset_delay_interval_s.is_some_and(|[_, latest_s]| latest_s < -0.15);
             assert_eq!(found.iter().find(early), None, "{again_s}");
         }
     }

@@ -13,7 +13,7 @@ use crate::math::whole;
 /// times as a lag.
 const ALIKE: f64 = 0.05;
 const VALLEY: f64 = 0.5;
-const LEAD_COUNTS: f64 = 2.0;
+const LEAD_COUNTS: f64 = 10.0;
 
 /// The lag of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -126,6 +126,10 @@ fn nearest_alike(all: &[f64], best: usize, near: Option<f64>) -> usize {
         Some(near) => (shift(k) - near).abs(),
         None => shift(k).max(-LEAD_COUNTS * shift(k)),
     };
+    // At the end of the range nobody knows what lies beyond.
+    if best == 0 || best + 1 == all.len() {
+        return best;
+    }
     let is_peak = |k: usize| {
         let beside = [k.checked_sub(1), Some(k + 1)];
         beside.into_iter().flatten().filter_map(|other| all.get(other)).all(|other| *other <= all[k])

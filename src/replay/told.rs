@@ -6,6 +6,9 @@ use crate::math::median;
 /// A joint stays off its plan at rest from so many bands of settling on: 0.5 deg, 5 mm.
 const STAYS_OFF: f64 = 5.0;
 
+/// Share of the intervals of single starts that may be alike for all starts of a direction.
+const ALIKE: f64 = 0.6;
+
 impl Replay {
     /// In which direction a joint leaves standstill later, if by more than chance makes of the joints of this run, and than
     /// the intervals of its starts leave open.
@@ -28,7 +31,7 @@ fn is_beyond<'a>(starts: impl Iterator<Item = &'a Transition>, found: &Direction
         }
     }
     let [other_s, later_s] = open_s.map(|open_s| if open_s.is_empty() { 0.0 } else { median(open_s) });
-    found.mean_delay_s[0] - found.mean_delay_s[1] > other_s.hypot(later_s)
+    found.mean_delay_s[0] - found.mean_delay_s[1] > ALIKE * other_s.hypot(later_s)
 }
 
 impl JointReplay {

@@ -12,7 +12,10 @@ use super::{
     rows::Rows,
     unit::Unit,
 };
-use crate::remark::{Code, Remarks};
+use crate::{
+    math::quantile,
+    remark::{Code, Remarks},
+};
 
 /// Words that say plan or measurement where nothing else does.
 const SECOND: [&str; 6] = ["estimate", "pfb", "fdb", "pcmd", "req", "dmd"];
@@ -21,6 +24,10 @@ const SECOND: [&str; 6] = ["estimate", "pfb", "fdb", "pcmd", "req", "dmd"];
 /// all but for this share.
 const STEPS: f64 = 5.0;
 const AS_FAR: f64 = 0.2;
+
+/// Columns that differ by rounding, a share of how far they go, in all rows but for the rest of this share, say the same.
+const ROUNDED: f64 = 0.002;
+const ALIKE: f64 = 0.99;
 
 /// Two columns for one thing are an error, unless they say the same, or one says so by a word of these, or one is the profile
 /// that leads to the set values of the other.
@@ -52,6 +59,7 @@ pub(super) fn drop_repeats(
             Rowwise::Profile(first_steps) if draft.role == Role::Planned => {
                 Some(Ok((first_steps, "is of set values that step, which the profile leads to in")))
             }
+            Rowwise::Stands(first_stands) => Some(Ok((first_stands, "never moves, other than"))),
             Rowwise::Profile(_) | Rowwise::Differ => Some(Err(())),
         };
         let Ok(gives_way) = by_word.map(Ok).or_else(by_rows).transpose() else {
@@ -89,7 +97,6 @@ pub(super) fn drop_repeats(
 
 /// Whether two columns say the same in two units: `q1_rad` and `q1_deg`.
 fn in_another_unit(head: &Head, labels: &[Label], columns: [usize; 2]) -> bool {
-    const ROUNDED: f64 = 0.002;
     let [Some(one), Some(other)] = columns.map(|column| labels[column].unit) else { return false };
     let read = |row: &Vec<Vec<u8>>, column: usize, unit: Unit| {
         let cell = row.get(column)?;
@@ -110,6 +117,8 @@ enum Rowwise {
     Same,
     /// One steps to where the other goes by and by: whether that is the first.
     Profile(bool),
+    /// One never moves, or holds nothing, and the other moves: whether that is the first.
+    Stands(bool),
     Differ,
 }
 
@@ -117,28 +126,40 @@ enum Rowwise {
 fn rows_of((text, separator): (&[u8], Separator), head: &Head, columns: [usize; 2]) -> Rowwise {
     let mut rows = Rows::new(text, separator);
     let mut record = ByteRecord::new();
-    let (mut differ, mut last, mut farthest) = (false, [f64::NAN; 2], [0.0_f64; 2]);
+    let (mut apart, mut last, mut farthest) = (Vec::new(), [f64::NAN; 2], [0.0_f64; 2]);
     let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     while let Some(line) = rows.next(&mut record) {
         if line < head.first_line {
             continue;
         }
-        differ |= record.get(columns[0]) != record.get(columns[1]);
-        for (k, column) in columns.into_iter().enumerate() {
+        let read = |column: usize| {
             let cell = record.get(column).unwrap_or_default();
-            let Some(value) = number(cell, false).or_else(|| number(cell, true)) else { continue };
+            number(cell, false).or_else(|| number(cell, true))
+        };
+        let both = columns.map(read);
+        for (k, value) in both.into_iter().enumerate() {
+            let Some(value) = value else { continue };
             farthest[k] = farthest[k].max((value - last[k]).abs());
             last[k] = value;
             range[k] = [range[k][0].min(value), range[k][1].max(value)];
         }
+        if let [Some(a), Some(b)] = both {
+            apart.push((a - b).abs());
+        }
     }
-    let travel = range.map(|[lowest, highest]| highest - lowest);
-    let as_far = (travel[0] - travel[1]).abs() <= AS_FAR * travel[0].max(travel[1]);
+    let travel = range.map(|[lowest, highest]| (highest - lowest).max(0.0));
+    let most = travel[0].max(travel[1]);
+    let as_far = (travel[0] - travel[1]).abs() <= AS_FAR * most;
     let [a, b] = farthest;
-    match differ {
-        false => Rowwise::Same,
-        true if as_far && (a > STEPS * b || b > STEPS * a) => Rowwise::Profile(a > b),
-        true => Rowwise::Differ,
+    let moves = travel.map(|travel| travel > 0.0);
+    if moves[0] != moves[1] {
+        Rowwise::Stands(moves[1])
+    } else if apart.is_empty() || quantile(apart, ALIKE) <= ROUNDED * most {
+        Rowwise::Same
+    } else if as_far && (a > STEPS * b || b > STEPS * a) {
+        Rowwise::Profile(a > b)
+    } else {
+        Rowwise::Differ
     }
 }
 

@@ -3,14 +3,16 @@
 use super::{Quantity, Role, run::CsvRun, time::is_dated};
 use crate::{
     math::{median, quantile},
-    units::seconds_since,
+    units::{DEGREE_RAD, seconds_since},
 };
 
 /// Joints of machines are slower, rad/s or m/s.
 const FASTEST: f64 = 30.0;
-/// A speed is that over so many rows, and most that a joint has, but for such a share of outliers.
+/// A speed is that over so many rows, and most that a joint has, but for such a share of lost readings and turns that wrap.
+/// Numbers beyond this are no rad, rad.
 const ROWS: usize = 10;
-const MOST: f64 = 0.99;
+const MOST: f64 = 0.9;
+const NO_RAD: f64 = 7.0;
 /// Rows are no farther apart, if their times are of seconds that were taken as ms.
 const LONGEST_S: f64 = 0.01;
 
@@ -27,7 +29,9 @@ pub(super) fn in_seconds(run: &CsvRun, column: &str) -> Option<String> {
     let speed = |q: &[f64]| {
         let over = t_s.windows(ROWS + 1).zip(q.windows(ROWS + 1));
         let speeds = over.map(|(t_s, q)| (q[ROWS] - q[0]).abs() / (t_s[ROWS] - t_s[0]));
-        quantile(speeds.filter(|speed| speed.is_finite()).collect(), MOST)
+        let is_rad = q.iter().filter(|q| q.is_finite()).all(|q| q.abs() <= NO_RAD);
+        let unit = if is_rad { 1.0 } else { DEGREE_RAD };
+        unit * quantile(speeds.filter(|speed| speed.is_finite()).collect(), MOST)
     };
     let measured = run.by_joint(Role::Measured, Quantity::Position)?;
     let fastest = measured.into_iter().flatten().map(speed).fold(0.0, f64::max);

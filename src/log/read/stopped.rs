@@ -12,6 +12,8 @@ const STANDS: [f64; 2] = [0.15 * DEGREE_RAD, 0.002];
 const STEP_S: f64 = 0.5;
 /// What swings is back after its period: four fifths of its samples meanwhile lie within so many times that of a joint that stands.
 const SWINGS: f64 = 2.0;
+/// A machine that is shaken swings by less than this share of what its plan does.
+const OF_PLAN: f64 = 0.3;
 const MIDDLE: [f64; 2] = [0.1, 0.9];
 
 /// Motion of machine and plan that is worth a remark: rad, and m.
@@ -127,7 +129,9 @@ fn standing(joints: &[(&Track, &Track)], [first_s, last_s]: [f64; 2]) -> Vec<[f6
         let now = places(next_s);
         let moved = |k: usize| {
             let stands = least(joints[k].1.kind(), STANDS);
-            (now[k] - before[k]).abs() > stands || swing(joints[k].1, [at_s, next_s]) > SWINGS * stands
+            let asked = swing(joints[k].0, [at_s, next_s]);
+            (now[k] - before[k]).abs() > stands
+                || swing(joints[k].1, [at_s, next_s]) > (SWINGS * stands).max(OF_PLAN * asked)
         };
         if next_s < at_s + 2.0 * STEP_S && !(0..joints.len()).any(moved) {
             match found.last_mut().filter(|[_, to_s]| *to_s >= at_s) {

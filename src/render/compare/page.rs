@@ -293,6 +293,7 @@ mod tests {
         assert!(!page(&compared("task-1-run.mcap"), 60).contains("Nothing changed"));
         let mut other = compared("precompensated-run.mcap");
         other.pairs.clear();
+        other.same_plan = false;
         let page = page(&other, 60);
         assert!(page.contains("Not comparable") && !page.contains("Rms error, whole run"));
     }

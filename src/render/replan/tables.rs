@@ -11,7 +11,9 @@ use crate::{
     replay::Dimension,
     series::{JointKind, Track},
     task::Objective,
-    workflow::replan::{Checks, Commanded, HeldTo, Origin, Predicted, PredictedTransition, Replanned},
+    workflow::replan::{
+        Checks, Commanded, HeldTo, MeasuredPeaks, Origin, Predicted, PredictedTransition, Replanned,
+    },
 };
 
 /// Predicted transitions of joints of a kind.
@@ -70,8 +72,11 @@ fn expected(replanned: &Replanned) -> Table {
     let (before, after) = (&replanned.before, &replanned.after);
     let now = &before.predicted;
     let kind_of = |joint: &str| replanned.plan.track(joint).map_or(JointKind::Turns, Track::kind);
+    let has_any = |of: &&MeasuredPeaks| {
+        of.mean_rad.is_some() || after.transitions.iter().any(|t| kind_of(&t.joint) == of.kind)
+    };
     // Of each kind on its own: a mean over both has no unit.
-    let errors = before.measured_peaks.iter().flat_map(|of| {
+    let errors = before.measured_peaks.iter().filter(has_any).flat_map(|of| {
         let shown = |rad: f64| number(Dimension::Position, of.kind, rad);
         let error = |name: &str, measured: Option<f64>, peak: fn(PeaksOf<'_>) -> f64| {
             let [now, after] = [now, after].map(|predicted| {

@@ -6,7 +6,7 @@ use crate::remark::Code;
 /// Why a comparison says nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Idle {
-    /// No start of one side has a counterpart in the other.
+    /// No start of one side has a counterpart in the other; runs of one plan without any can be compared as a whole.
     NoPair,
     /// Both sides are one run.
     SameRun,
@@ -17,7 +17,7 @@ impl Comparison {
     pub fn idle(&self) -> Option<Idle> {
         let same = || self.remarks.as_slice().iter().any(|remark| remark.code == Code::SameRun);
         match self.verdict {
-            _ if self.pairs.is_empty() => Some(Idle::NoPair),
+            _ if self.pairs.is_empty() && !(self.same_plan && self.unpaired.is_empty()) => Some(Idle::NoPair),
             Verdict::Equal if same() => Some(Idle::SameRun),
             _ => None,
         }
@@ -43,6 +43,7 @@ mod tests {
         let mut other = compared("precompensated-run.mcap");
         assert_eq!(other.idle(), None);
         other.pairs.clear();
+        other.same_plan = false;
         assert_eq!(other.idle(), Some(Idle::NoPair));
     }
 }

@@ -45,7 +45,7 @@ pub use failure::ReplanFailure;
 pub use history::PastRun;
 pub use inputs::Inputs;
 pub use limits::{HeldTo, Origin};
-pub use outcome::{Before, Replanned, Search};
+pub use outcome::{Before, MeasuredPeaks, Replanned, Search};
 pub use predicted::{Predicted, PredictedTransition, Response, predicted, promised};
 pub use unclear::Unclear;
 

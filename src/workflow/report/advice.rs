@@ -94,7 +94,12 @@ pub fn advice(report: &Report) -> Vec<Advice> {
     if !report.remarks.is_empty() {
         advice.push(Advice::ClearDoubts(report.remarks.as_slice().len()));
     }
-    if report.fault.is_some() {
+    let ends = match &report.fault {
+        // The others can be seen to.
+        Some(Fault::Dead { joints, .. }) => 2 * joints.len() >= replay.joints.len(),
+        other => other.is_some(),
+    };
+    if ends {
         advice.push(Advice::Compare);
         return advice;
     }

@@ -3,8 +3,8 @@
 use super::outcome::{Fault, Report};
 use crate::replay::{JointReplay, Transition};
 
-/// A joint with so much noise, by its RMS error, has no error that a command could take away.
-const HIDES: f64 = 0.5;
+/// Errors that are nowhere larger than so many standard deviations of the noise are noise.
+const HIDES: f64 = 6.0;
 
 impl Fault {
     /// `stood_s`: from when to when the machine stood.
@@ -46,8 +46,10 @@ impl Report {
     /// The joint with the largest error, where that of all is hardly more than the noise of their sensors.
     pub fn only_noise(&self) -> Option<&JointReplay> {
         let joints = &self.replay.joints;
-        let noisy = joints.iter().all(|joint| joint.noise.sigma >= HIDES * joint.tracking_error.rms);
-        let largest = joints.iter().max_by(|a, b| a.tracking_error.rms.total_cmp(&b.tracking_error.rms));
+        let noisy = joints.iter().all(|joint| joint.tracking_error.peak <= HIDES * joint.noise.sigma);
+        let by_band =
+            |joint: &JointReplay| joint.tracking_error.rms / self.replay.rules.sizes(joint.kind).settle_band;
+        let largest = joints.iter().max_by(|a, b| by_band(a).total_cmp(&by_band(b)));
         largest.filter(|_| noisy)
     }
 }

@@ -117,6 +117,8 @@ pub struct Travel {
 
 /// A stroke is clear that is so many standard deviations of its noise, and followed where the joint goes as far within this share.
 const CLEAR_SIGMAS: f64 = 50.0;
+/// And at least this, rad or m.
+const CLEAR: f64 = 1e-6;
 const ALIKE: f64 = 0.2;
 
 impl Report {
@@ -145,7 +147,7 @@ impl Report {
 
 /// Whether a joint clearly goes as far as its plan.
 fn is_clear([planned, measured]: [f64; 2], sigma: f64) -> bool {
-    planned > CLEAR_SIGMAS * sigma && (measured - planned).abs() <= ALIKE * planned
+    planned > (CLEAR_SIGMAS * sigma).max(CLEAR) && (measured - planned).abs() <= ALIKE * planned
 }
 
 #[cfg(test)]
