@@ -94,24 +94,24 @@ pub fn advice(report: &Report) -> Vec<Advice> {
     if !report.remarks.is_empty() {
         advice.push(Advice::ClearDoubts(report.remarks.as_slice().len()));
     }
-    let ends = match &report.fault {
-        // The others can be seen to.
-        Some(Fault::Dead { joints, .. }) => 2 * joints.len() >= replay.joints.len(),
-        other => other.is_some(),
+    let dead = match &report.fault {
+        Some(Fault::Dead { joints, .. }) => joints.as_slice(),
+        _ => &[],
     };
-    if ends {
+    // Beside a joint that is dead the others can be seen to.
+    if report.fault.is_some() && (dead.is_empty() || 2 * dead.len() >= replay.joints.len()) {
         advice.push(Advice::Compare);
         return advice;
     }
-    let stuck = replay.joints.iter().filter(|joint| joint.unanswered_starts > 0);
+    let stuck =
+        replay.joints.iter().filter(|joint| joint.unanswered_starts > 0 && !dead.contains(&joint.name));
     advice.extend(stuck.max_by_key(|joint| joint.unanswered_starts).map(|joint| Advice::FreeJoint {
         joint: joint.name.clone(),
         unanswered: joint.unanswered_starts,
         starts: joint.starts,
         reversals: joint.reversals,
     }));
-    let worst = replay.worst_first().into_iter().next();
-    let Some(worst) = worst else {
+    let Some(worst) = report.worst() else {
         advice.push(Advice::RecordStarts);
         return advice;
     };
