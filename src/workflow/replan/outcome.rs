@@ -189,6 +189,30 @@ impl Past {
     }
 }
 
+/// What of a correction limits leave out.
+fn limited(command: &Commanded, remarks: &mut Remarks) {
+    if let Some((share, limit)) = command.step {
+        let message = format!(
+            "{:.0} % of the usual step is taken on all joints: more of it would break the limit of {}",
+            100.0 * share,
+            limit.name()
+        );
+        remarks.add(Code::BeyondLimit, 1, message);
+    }
+    for joint in command.joints.iter().filter(|joint| joint.share < LEAST_SHARE) {
+        let why = match joint.because {
+            Some(limit) if !command.margins.is_empty() => format!("break the limit of {}", limit.name()),
+            _ => format!("accelerate it to more than {SHARPEST} times its plan, and no limit of it is known"),
+        };
+        let message = format!(
+            "{:.0} % of the correction of {} is applied: more of it would {why}",
+            100.0 * joint.share,
+            joint.name
+        );
+        remarks.add(Code::BeyondLimit, 1, message);
+    }
+}
+
 pub(super) fn replanned(
     (fit, fitted_to): (Fit, Vec<String>),
     (last, delay_known): (Last, bool),
@@ -256,28 +280,7 @@ pub(super) fn replanned(
             );
             remarks.add(Code::BeyondLimit, 1, message);
         }
-        if let Some((share, limit)) = command.step {
-            let message = format!(
-                "{:.0} % of the usual step is taken on all joints: more of it would break the limit of {}",
-                100.0 * share,
-                limit.name()
-            );
-            remarks.add(Code::BeyondLimit, 1, message);
-        }
-        for joint in command.joints.iter().filter(|joint| joint.share < LEAST_SHARE) {
-            let why = match joint.because {
-                Some(limit) if !command.margins.is_empty() => format!("break the limit of {}", limit.name()),
-                _ => format!(
-                    "accelerate it to more than {SHARPEST} times its plan, and no limit of it is known"
-                ),
-            };
-            let message = format!(
-                "{:.0} % of the correction of {} is applied: more of it would {why}",
-                100.0 * joint.share,
-                joint.name
-            );
-            remarks.add(Code::BeyondLimit, 1, message);
-        }
+        limited(command, &mut remarks);
     }
     let duration_s =
         evaluation.as_ref().map_or(last.duration_s, |evaluation| evaluation.objectives[Objective::Duration]);
