@@ -32,9 +32,8 @@ const CAP_RAD: f64 = 1.5 * DEGREE_RAD;
 
 const CAP_BY_ERROR: f64 = 1.25;
 
-/// Frequency of what is left of a finished correction by half, Hz, of a calm joint and of one that oscillates, and by that of what is
-/// learnt.
-const FINISHED_HZ: [f64; 2] = [1.8, 1.2];
+/// Frequency of what is left of a finished correction by half, Hz, and by that of what is learnt.
+const FINISHED_HZ: f64 = 1.2;
 
 const FINISHED_BY_CUT_OFF: f64 = 2.0;
 
@@ -175,8 +174,6 @@ impl<'a> Joint<'a> {
         // Where runs differ by themselves, a larger correction that gained nothing tells of no limit.
         let spread_rad = made.spread_rad.unwrap_or(0.0);
         made.stalled.retain(|held| spread_rad < DIFFERS * held.error_rad);
-        let held = self.stop.is_some() || !made.stalled.is_empty();
-        let finished_hz = finished_hz(&manner, held);
         let fade = fade(self.planned.len(), free);
         let (step, mut wanted_rad) = if let Some(from) = kept {
             let (from, _) = unspoilt(from, &self.sent, &self.whole_rad());
@@ -197,7 +194,8 @@ impl<'a> Joint<'a> {
             let within = |wanted_rad: &[f64]| {
                 let mut wanted_rad = wanted_rad.to_vec();
                 faded(&mut wanted_rad, &fade);
-                let wanted = Wanted { correction_rad: &wanted_rad, cut_off_hz: finished_hz, most_rad };
+                let wanted =
+                    Wanted { correction_rad: &wanted_rad, cut_off_hz: finished_hz(&manner), most_rad };
                 shaped(wanted, free, room(name).as_ref()).into_iter().map(|state| state[0]).collect()
             };
             let (step, mut wanted_rad) =
@@ -213,7 +211,7 @@ impl<'a> Joint<'a> {
             Step::Kept { .. } if relieved_rad < TOLD_RAD => {
                 (KEPT_HZ, room(self.name).and_then(Room::of_sent))
             }
-            _ => (finished_hz, room(self.name)),
+            _ => (finished_hz(&manner), room(self.name)),
         };
         // Runs in which the joint was not measured count, too.
         let of_run = |from: usize| self.answers[from].of_run;
@@ -308,11 +306,9 @@ impl<'a> Joint<'a> {
     }
 }
 
-/// Frequency of what is left of a finished correction by half, Hz: what is cut at a stop, or put together, has corners.
-fn finished_hz(manner: &Manner, held: bool) -> f64 {
-    let [calm, other] = FINISHED_HZ;
-    let least = if manner.character == Character::Calm && !held { calm } else { other };
-    least.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz)
+/// Frequency of what is left of a finished correction by half, Hz.
+fn finished_hz(manner: &Manner) -> f64 {
+    FINISHED_HZ.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz)
 }
 
 /// Whether a run has little to do with the plan: wrong sign, zero, unit or name, or a joint that is stuck. One that moves,

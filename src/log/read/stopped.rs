@@ -10,10 +10,10 @@ use crate::{
 /// Motion in half a second with which a joint stands: rad, and m.
 const STANDS: [f64; 2] = [0.15 * DEGREE_RAD, 0.002];
 const STEP_S: f64 = 0.5;
-/// What swings is back after its period: four fifths of its samples meanwhile lie within so many times that of a joint that stands.
+/// What swings is back after its period: four fifths of its samples meanwhile lie within so many times that of a joint that stands,
+/// the plan comes back to less than this share of its own swing, and the joint swings by more than it.
 const SWINGS: f64 = 2.0;
-/// A machine that is shaken swings by less than this share of what its plan does.
-const OF_PLAN: f64 = 0.3;
+const OF_PLAN: f64 = 0.5;
 const MIDDLE: [f64; 2] = [0.1, 0.9];
 
 /// Motion of machine and plan that is worth a remark: rad, and m.
@@ -129,9 +129,7 @@ fn standing(joints: &[(&Track, &Track)], [first_s, last_s]: [f64; 2]) -> Vec<[f6
         let now = places(next_s);
         let moved = |k: usize| {
             let stands = least(joints[k].1.kind(), STANDS);
-            let asked = swing(joints[k].0, [at_s, next_s]);
-            (now[k] - before[k]).abs() > stands
-                || swing(joints[k].1, [at_s, next_s]) > (SWINGS * stands).max(OF_PLAN * asked)
+            (now[k] - before[k]).abs() > stands || swings_along(joints[k], [at_s, next_s])
         };
         if next_s < at_s + 2.0 * STEP_S && !(0..joints.len()).any(moved) {
             match found.last_mut().filter(|[_, to_s]| *to_s >= at_s) {
@@ -142,6 +140,15 @@ fn standing(joints: &[(&Track, &Track)], [first_s, last_s]: [f64; 2]) -> Vec<[f6
         (at_s, before) = (next_s, now);
     }
     found
+}
+
+/// Whether a joint swings to and fro with its plan; one that is shaken while its plan goes on or rests does not.
+fn swings_along((plan, came): (&Track, &Track), span_s: [f64; 2]) -> bool {
+    let [from, to] = span_s.map(|t_s| plan.held_at(t_s).position);
+    let [asked, done] = [plan, came].map(|track| swing(track, span_s));
+    asked > SWINGS * least(plan.kind(), STANDS)
+        && (to - from).abs() < OF_PLAN * asked
+        && done > OF_PLAN * asked
 }
 
 /// Whether the joints that moved in a span of time lay near their plan, that in the middle, by the planned motion; not those of a
@@ -246,5 +253,11 @@ mod tests {
         let found: Vec<String> =
             stops(&swing(0.0), &swing(0.03)).into_iter().map(|stop| stop.message).collect();
         assert_eq!(found, Vec::<String>::new());
+        // One that stopped for good and is shaken by an engine stands, whatever its plan does.
+        let plan = Series::sampled("boom", 3000, |t| 0.5 * (0.7 * t).sin());
+        let shaken =
+            Series::sampled("boom", 3000, |t| 0.5 * (0.7 * t.min(9.0)).sin() + 2.5e-3 * (14.0 * t).sin());
+        let from_s: Vec<f64> = stops(&plan, &shaken).iter().map(|stop| stop.stood_s[0]).collect();
+        assert!(matches!(from_s[..], [from_s] if (8.5..10.0).contains(&from_s)), "{from_s:?}");
     }
 }

@@ -22,7 +22,8 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     let some = peaks.iter().filter(|peak| peak.pairs > 0);
     lines.extend(some.map(|peak| verdict(peak, kind(comparison, &peak.scope))));
     if lines.is_empty() {
-        lines.push("Not comparable: no transition is found in every run.".to_owned());
+        let what = if comparison.idle() == Some(Idle::NoPair) { "Not comparable: no" } else { "No" };
+        lines.push(format!("{what} transition is found in every run."));
     } else if comparison.idle() == Some(Idle::SameRun) {
         lines.insert(0, "Both sides are one and the same run: their difference says nothing.".to_owned());
     }

@@ -108,7 +108,7 @@ pub struct Commanded {
     /// The limits of the task's arm; empty without a task.
     pub margins: Vec<Margin>,
     /// Share of the usual step that was taken, and the limit that more of it would break, where that is less than one.
-    pub step: Option<(f64, Limit)>,
+    pub smaller: Option<(f64, Limit)>,
 }
 
 impl Commanded {
@@ -122,8 +122,8 @@ impl Commanded {
         self.joints.iter().find(|joint| joint.share <= LITTLE)?.because
     }
 
-    /// Corrections that are applied, each by its share.
-    fn applied_in_all(&self) -> f64 {
+    /// The shares of the corrections that are applied.
+    fn sum_of_shares(&self) -> f64 {
         self.joints.iter().filter(|joint| joint.applied()).map(|joint| joint.share).sum()
     }
 }
@@ -157,12 +157,12 @@ pub(super) fn commanded(
     let Some(limit) = best.bound().filter(|_| settings.keep.is_none() && subject.setup.is_some()) else {
         return Ok(best);
     };
-    let mut most = best.applied_in_all();
+    let mut most = best.sum_of_shares();
     for less in SMALLER {
         let made = of_step(fit, subject, runs, Learning { gain: less * settings.gain, ..settings })?;
-        let applied = less * made.applied_in_all();
+        let applied = less * made.sum_of_shares();
         if applied > most {
-            (best, most) = (Commanded { step: Some((less, limit)), ..made }, applied);
+            (best, most) = (Commanded { smaller: Some((less, limit)), ..made }, applied);
         }
     }
     Ok(best)
@@ -272,7 +272,7 @@ fn of_step(
         })
         .collect();
     let joints = joints(fit, plan, &series, &planned, &learnt, &shares)?;
-    Ok(Commanded { series, acceleration_rad_s2, joints, hunting: learnt.hunting, margins, step: None })
+    Ok(Commanded { series, acceleration_rad_s2, joints, hunting: learnt.hunting, margins, smaller: None })
 }
 
 /// Where no limit of a joint is known, a correction accelerates it to no more than this times what its plan does, or to this,

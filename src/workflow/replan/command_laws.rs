@@ -296,7 +296,7 @@ fn no_command_breaks_a_limit_a_rule_of_the_controller_or_the_end_of_its_plan() {
     let of = |k: usize| {
         let seed = k as u64 + 1;
         let case = case(&fit, seed);
-        (broken(seed, &case), [case.command.applied(), case.command.step.is_some()].map(usize::from))
+        (broken(seed, &case), [case.command.applied(), case.command.smaller.is_some()].map(usize::from))
     };
     let found: Vec<(Option<String>, [usize; 2])> = threads::numbered(usize::try_from(count()).unwrap(), of);
     let [corrected, smaller] = [0, 1].map(|k| found.iter().map(|(_, is)| is[k]).sum::<usize>());

@@ -191,7 +191,7 @@ impl Past {
 
 /// What of a correction limits leave out.
 fn limited(command: &Commanded, remarks: &mut Remarks) {
-    if let Some((share, limit)) = command.step {
+    if let Some((share, limit)) = command.smaller {
         let message = format!(
             "{:.0} % of the usual step is taken on all joints: more of it would break the limit of {}",
             100.0 * share,
