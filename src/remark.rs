@@ -90,6 +90,8 @@ pub enum Code {
     EqualKeyPoints,
     /// A key point at the end of a joint's range, where the arm stops.
     RangeEnd,
+    /// Key points that are passed later than a plan would be that stops at each.
+    StopsAreFaster,
     /// A ceiling so high that it binds nothing.
     InactiveBound,
     /// Limits that are judged between runs of different plans.

@@ -48,7 +48,9 @@ const MORE_DECIMALS: usize = 6;
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     let least = crate::math::whole((1.0 - value.abs().log10().floor()).clamp(0.0, 99.0));
     let more = least > decimals && least <= decimals + MORE_DECIMALS;
-    format!("{value:.*}", if more { least } else { decimals })
+    let text = format!("{value:.*}", if more { least } else { decimals });
+    let nothing = text.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.'));
+    text.strip_prefix('-').filter(|_| nothing).map_or(text.clone(), str::to_owned)
 }
 
 #[cfg(test)]
@@ -64,6 +66,7 @@ mod tests {
             (-4.56e-5, 4, "-0.000046"),
             (3e-12, 2, "0.00"),
             (0.0, 2, "0.00"),
+            (-3e-12, 2, "0.00"),
             (0.43, 0, "0.43"),
         ] {
             assert_eq!(fixed(value, decimals), text);

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::{
     CliError, Outcome, Run,
     console::{Console, spare_for_log},
-    number::seconds,
+    number::any_seconds,
     read::ReadArgs,
 };
 use crate::{
@@ -37,7 +37,7 @@ pub(super) struct Args {
     output: PathBuf,
 
     /// Time of the plan's first sample, from the start of the run's log [default: found by the command]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true, requires = "plan")]
+    #[arg(long, value_name = "SECONDS", value_parser = any_seconds, allow_negative_numbers = true, requires = "plan")]
     at: Option<f64>,
 
     /// Print what was joined as one JSON document

@@ -6,7 +6,7 @@ use super::{
     channel::Definitions,
     csv::MAP_BEGINS,
     file::{Source, Span, scan},
-    looks::{LOOKED_AT, is_table},
+    looks::{LOOKED_AT, is_document, is_table},
 };
 
 /// What a file holds, as far as its first bytes and its records tell.
@@ -59,6 +59,7 @@ const OWN_TEXTS: [&str; 6] = [
 ];
 /// The first line of limits.
 const LIMITS_BEGIN: &str = "# What a machine does with what it is sent, as `hydrotrace fit` found it";
+const TIMES: [&str; 4] = ["\"t\"", "\"time", "time\"", "stamp\""];
 const SETTINGS: [&str; 4] = ["toml", "json", "yaml", "yml"];
 
 /// What a file holds. Its name is not remembered as that of an input. A pipe, which is there once, is not looked into.
@@ -96,7 +97,9 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
     if start.contains("<robot ") {
         return Ok(Contents::Recording("a robot description"));
     }
-    if !is_text(path, &start) && is_table(path, &bytes) {
+    // Settings have lists, too, and no time.
+    let timed = || is_document(path, &bytes) && TIMES.iter().any(|key| start.contains(key));
+    if !is_text(path, &start) && (is_table(path, &bytes) || timed()) {
         let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         return Ok(Contents::Table(String::from_utf8_lossy(line).into_owned()));
     }

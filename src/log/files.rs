@@ -37,6 +37,22 @@ pub struct ScannedLog<'a> {
     pub(super) remarks: Remarks,
 }
 
+impl<'a> ScannedLog<'a> {
+    /// The files in the order of the run.
+    pub(super) fn in_order(&self) -> Vec<&ScannedFile<'a>> {
+        let mut files: Vec<&ScannedFile<'a>> = self.files.iter().collect();
+        if !self.ordered {
+            files.sort_by_cached_key(|file| (begins_ns(&file.layout), file.path));
+        }
+        files
+    }
+}
+
+/// When the recorder received the first message of a file, ns; `u64::MAX` if it has no message.
+fn begins_ns(layout: &Layout) -> u64 {
+    layout.blocks.iter().map(|block| block.begins_ns).find(|ns| *ns > 0).unwrap_or(u64::MAX)
+}
+
 /// One file.
 #[derive(Debug)]
 pub(super) struct ScannedFile<'a> {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{
-    csv::{begins_with_message, is_rule, of_lines},
+    csv::{begins_with_message, is_named_values, is_rule, of_lines},
     file::Span,
 };
 
@@ -57,9 +57,19 @@ pub(super) fn is_table(path: &Path, bytes: &[u8]) -> bool {
         || objects
         || list
         || printed()
+        || is_named_values(&text)
         || begins_with_message(&text)
         || [';', ',', '\t'].into_iter().any(|one| alike(one, &lines) || below(one))
         || spaced(&lines[last..])
+}
+
+/// Whether the first bytes of a file are those of a JSON document that may hold a table, and which this program did not write.
+pub(super) fn is_document(path: &Path, bytes: &[u8]) -> bool {
+    let named = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+    let own = bytes.starts_with(b"{\n  \"format\": \"hydrotrace.");
+    let text = String::from_utf8_lossy(bytes);
+    let lists = text.contains('[') || text.contains("{\"0\":");
+    named && !own && text.trim_start().starts_with('{') && lists
 }
 
 /// Whether lines are numbers between blanks, as many in each.
@@ -91,6 +101,9 @@ mod tests {
         assert!(is("a.txt", b" t | q\n---+---\n 0 | 1\n") && is("a.md", b"# Run\n\n| t | q |\n|--:|--:|\n"));
         assert!(is("run.lvm", b"LabVIEW Measurement\n"));
         assert!(is("a.csv", b"t,q\n0,1\n\0\0\0") && !is("a.csv", b"t,q\n\x000,1\n") && !is("a.csv", b"\0\0"));
+        let columns = b"{\"t\": [0, 1, 2], \"q\": [1";
+        assert!(is_document(Path::new("a.json"), columns) && !is_document(Path::new("a.txt"), columns));
+        assert!(!is_document(Path::new("a.json"), b"{\n  \"format\": \"hydrotrace.report.v2\", \"a\": ["));
         for text in [
             &b"{\n  \"a\": [\n    1,\n    2,\n    3\n  ]\n}\n"[..],
             b"a: 1\nb: 2\nc: 3\nd: 4\n",

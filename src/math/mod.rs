@@ -1,6 +1,7 @@
 //! Small numerics with no noun of the domain in them.
 
 mod hermite;
+mod levels;
 mod line;
 mod lowpass;
 mod paired;
@@ -14,6 +15,7 @@ mod two_samples;
 mod whole;
 
 pub use hermite::{State, cubic, linear, quintic, smooth_step};
+pub use levels::{column_levels, row_weights, step_scatter, weighted_median};
 pub use line::{Line, line};
 pub use lowpass::lowpass;
 pub use paired::{SignedRank, half_interval, signed_rank};
@@ -24,9 +26,6 @@ pub use statistic::{
     SIGMA_PER_MAD, deviation, dot, mad, mean, median, quantile, quantile_sorted, range, usual_step,
 };
 pub use step::{Step, step};
-pub use trend::{
-    Trend, begins, column_levels, false_discovery, row_weights, step_scatter, theil_sen, trend,
-    weighted_median,
-};
+pub use trend::{Trend, begins, false_discovery, theil_sen, trend};
 pub use two_samples::{Difference, difference};
 pub use whole::whole;

@@ -46,6 +46,7 @@ pub use problem::{Machine, NoMachine, TimingProblem};
 pub use reference::{BEYOND, Reference};
 pub use sampled_motion::SampledMotion;
 pub use search::{Found, Phase, Progress, Search, search};
+pub use seed::fastest;
 pub use setup::Setup;
 pub use shape::{MOST_PIECES, NoShape, Shape, shape, smoother};
 pub use speed_room::SpeedRoom;

@@ -1,5 +1,7 @@
 //! How fast a joint moves while its plan rests: a load that sinks, a cylinder that leaks, a loop that does not hold.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::Sizes;
@@ -12,6 +14,8 @@ use crate::{
 const PART_S: f64 = 2.0;
 /// Fewest samples of a part.
 const FEWEST: usize = 8;
+/// A drift that goes on is in the later halves of rests this much of what it is in the first, at least.
+const SLOWS: f64 = 0.5;
 
 /// Mean speed while the plan rests, beyond that of a plan that moves too slowly to be seen to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -26,39 +30,66 @@ pub struct RestDrift {
 }
 
 impl RestDrift {
-    /// Whether it is more than scatter and in all moves the joint by more than the band of settling. Joints are many, and tails
-    /// of settling are no scatter: it must be larger than its whole interval is wide.
+    /// Whether it is more than scatter and in all moves the joint by more than the band of settling. Joints are many:
+    /// it must be larger than its whole interval is wide.
     pub fn counts(&self, sizes: &Sizes) -> bool {
         let sure = self.interval.is_some_and(|[low, high]| self.speed.abs() > high - low);
         sure && (self.speed * self.duration_s).abs() >= sizes.settle_band
     }
 }
 
-/// The drift of a joint whose plan rests in some samples; `None` where no rest is long enough.
+/// The drift of a joint whose plan rests in some samples; `None` where no rest is long enough. A joint that comes to rest slows
+/// down: where it does, its drift is that of the later halves of the rests.
 pub(super) fn rest_drift(pair: &Pair, rest: &[bool]) -> Option<RestDrift> {
-    let mut parts: Vec<Vec<f64>> = Vec::new();
-    let mut duration_s = 0.0;
-    for segment in &pair.segments {
-        let mut from = segment.start;
-        while from < segment.end {
-            let until_s = pair.t_s[from] + PART_S;
-            let own = rest[from..segment.end].iter().zip(&pair.t_s[from..]);
-            let part = from..from + own.take_while(|(rests, t_s)| **rests && **t_s < until_s).count();
-            from = part.end.max(from + 1);
-            let lasts_s = pair.t_s[part.clone()].last().map_or(0.0, |last_s| last_s - pair.t_s[part.start]);
-            let t_s = &pair.t_s[part.clone()];
-            if lasts_s >= 0.5 * PART_S && part.len() >= FEWEST {
-                let [came, asked] =
-                    [&pair.measured, &pair.planned].map(|x| line(t_s, &x[part.clone()]).slope);
-                parts.push(vec![came - asked]);
-                duration_s += lasts_s;
+    let rests: Vec<Vec<Part>> = pair.segments.iter().flat_map(|s| rests(pair, rest, s.clone())).collect();
+    let halves = |of: fn(&[Part]) -> &[Part]| -> Vec<Part> {
+        rests.iter().filter(|parts| parts.len() > 1).flat_map(|parts| of(parts)).copied().collect()
+    };
+    let first = halves(|parts| &parts[..parts.len() / 2]);
+    let later = halves(|parts| &parts[parts.len().div_ceil(2)..]);
+    let slows = !later.is_empty() && mean(&later).abs() < SLOWS * mean(&first).abs();
+    let parts = if slows { later } else { rests.concat() };
+    let speed = mean(&parts);
+    let half = half_interval(&parts.iter().map(|part| vec![part.speed]).collect::<Vec<_>>());
+    let interval = half.map(|half| [speed - half, speed + half]);
+    let duration_s = parts.iter().map(|part| part.lasts_s).sum();
+    (!parts.is_empty()).then_some(RestDrift { speed, interval, duration_s })
+}
+
+/// What a joint does while its plan rests, of one part of a rest.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    speed: f64,
+    lasts_s: f64,
+}
+
+fn mean(parts: &[Part]) -> f64 {
+    parts.iter().map(|part| part.speed).sum::<f64>() / parts.len() as f64
+}
+
+/// The parts of each rest within a segment.
+fn rests(pair: &Pair, rest: &[bool], segment: Range<usize>) -> Vec<Vec<Part>> {
+    let mut rests = vec![Vec::new()];
+    let mut from = segment.start;
+    while from < segment.end {
+        let until_s = pair.t_s[from] + PART_S;
+        let own = rest[from..segment.end].iter().zip(&pair.t_s[from..]);
+        let part = from..from + own.take_while(|(rests, t_s)| **rests && **t_s < until_s).count();
+        if part.is_empty() {
+            rests.push(Vec::new());
+        }
+        from = part.end.max(from + 1);
+        let t_s = &pair.t_s[part.clone()];
+        let lasts_s = t_s.last().map_or(0.0, |last_s| last_s - t_s[0]);
+        if lasts_s >= 0.5 * PART_S && part.len() >= FEWEST {
+            let [came, asked] = [&pair.measured, &pair.planned].map(|x| line(t_s, &x[part.clone()]).slope);
+            let own = Part { speed: came - asked, lasts_s };
+            if let Some(parts) = rests.last_mut() {
+                parts.push(own);
             }
         }
     }
-    let speed = parts.iter().flatten().sum::<f64>() / parts.len() as f64;
-    let half = half_interval(&parts);
-    let interval = half.map(|half| [speed - half, speed + half]);
-    (!parts.is_empty()).then_some(RestDrift { speed, interval, duration_s })
+    rests
 }
 
 #[cfg(test)]
@@ -88,5 +119,7 @@ mod tests {
         assert_eq!(drift(slow, |t| slow(t - 4.0)), None, "a slow plan");
         let swings = |t: f64| 0.5 + 3e-3 * (std::f64::consts::TAU * 0.4 * t).sin();
         assert_eq!(drift(|_| 0.5, swings), None, "a joint that swings");
+        let comes = |t: f64| 0.5 - 0.02 * (-t / 6.0).exp();
+        assert_eq!(drift(|_| 0.5, comes), None, "a joint that comes to rest");
     }
 }

@@ -16,6 +16,8 @@ pub struct Located {
     pub joints: usize,
     /// Other places that fit as well.
     pub others: usize,
+    /// Share of the motion that lies within the longer series, of one of which less than four fifths do; else 1.
+    pub covered: f64,
     /// Length of the motion in the longer series by its own, where it fits clearly better at another than 1, for clocks that run
     /// apart: `rms_rad` is what is then left; `at_s` is of 1.
     pub pace: Option<f64>,
@@ -32,6 +34,11 @@ impl Located {
 const STEP_S: f64 = 0.1;
 /// Share of the motion that must lie within the longer series.
 const COVERED: f64 = 0.8;
+/// The same of a run that was stopped, or recorded late: what there is of it moves by a share of the whole, and fits closely.
+const PART_COVERED: f64 = 0.3;
+const PART_MOVES: f64 = 0.3;
+const PART_FITS: f64 = 0.02;
+const WHOLE_FITS: f64 = 0.1;
 /// Longest series that is looked through, s.
 const LONGEST_S: f64 = 250_000.0;
 /// Less than this is no motion, rad.
@@ -58,52 +65,70 @@ fn pairs<'a>(motion: &'a Series, within: &'a Series) -> Vec<(&'a Track, &'a Trac
 }
 
 /// Looks for `motion` in `within` by its positions, over the joints of both; a metre counts as a radian. Of equally good
-/// places the first. `None` if they share no joint, the motion does not move, less than four fifths
-/// of it lie within, or one lasts three days.
+/// places the first. `None` if they share no joint, the motion does not move, less than four fifths of it lie within and no part of it
+/// that fits closely, or one lasts three days.
 pub fn locate(motion: &Series, within: &Series) -> Option<Located> {
     let pairs = pairs(motion, within);
+    let whole = located(&pairs, COVERED);
+    let fits = |found: &Located, share: f64| found.rms_rad <= share * found.spread_rad;
+    if whole.is_some_and(|found| fits(&found, WHOLE_FITS)) {
+        return whole;
+    }
+    let part = located(&pairs, PART_COVERED).filter(|found| fits(found, PART_FITS) && found.pace.is_none());
+    part.or(whole)
+}
+
+fn located(pairs: &[(&Track, &Track)], covered: f64) -> Option<Located> {
     let [from_s, to_s] = span_s(pairs.iter().map(|pair| pair.0))?;
     let [start_s, end_s] = span_s(pairs.iter().map(|pair| pair.1))?;
-    let spread_rad = spread_rad(&pairs, from_s, to_s);
-    if spread_rad < LEAST_RAD {
+    let spread = spread_rad(pairs, from_s, to_s);
+    if spread < LEAST_RAD {
         return None;
     }
     let length_s = to_s - from_s;
     // The motion may stick out at either end.
-    let earliest_s = start_s - (1.0 - COVERED) * length_s;
-    let latest_s = end_s - COVERED * length_s;
-    let first = first_look(&pairs, [from_s, to_s], [earliest_s, latest_s])?;
-    let judge = |at_s: f64| left_rad(&pairs, [from_s, to_s], at_s, 1.0, INSTANTS);
+    let earliest_s = start_s - (1.0 - covered) * length_s;
+    let latest_s = end_s - covered * length_s;
+    let first = first_look(pairs, [from_s, to_s], [earliest_s, latest_s], covered)?;
+    let judge = |at_s: f64| left_rad(pairs, [from_s, to_s], (at_s, 1.0), INSTANTS, covered);
+    // What of it lies within, where its first sample lies at `at_s`.
+    let within_s = |at_s: f64| [from_s + (start_s - at_s).max(0.0), to_s.min(from_s + end_s - at_s)];
+    let moves = |at_s: f64| {
+        let [low_s, high_s] = within_s(at_s);
+        covered >= COVERED || spread_rad(pairs, low_s, high_s) >= PART_MOVES * spread
+    };
     let mut found: Vec<(f64, f64)> = Vec::new();
     for near_s in first {
         let at_s = least(&judge, near_s - STEP_S, near_s + STEP_S);
-        if let Some(rms_rad) = judge(at_s) {
+        if let Some(rms_rad) = judge(at_s).filter(|_| moves(at_s)) {
             found.push((at_s, rms_rad));
         }
     }
     let best_rad = found.iter().map(|place| place.1).min_by(f64::total_cmp)?;
-    found.retain(|place| place.1 <= (ALIKE * best_rad).max(ALIKE_SHARE * spread_rad));
+    found.retain(|place| place.1 <= (ALIKE * best_rad).max(ALIKE_SHARE * spread));
     let (at_s, rms_rad) = found.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let (pace, rms_rad) =
-        paced(&pairs, [from_s, to_s], at_s).map_or((None, rms_rad), |paced| (Some(paced.0), paced.1));
+        paced(pairs, [from_s, to_s], at_s).map_or((None, rms_rad), |paced| (Some(paced.0), paced.1));
     let (joints, others) = (pairs.len(), found.len() - 1);
-    Some(Located { at_s: at_s - from_s, rms_rad, spread_rad, joints, others, pace })
+    let [low_s, high_s] = within_s(at_s);
+    let covered = if covered < COVERED { (high_s - low_s) / length_s } else { 1.0 };
+    Some(Located { at_s: at_s - from_s, rms_rad, spread_rad: spread, joints, others, pace, covered })
 }
 
 /// Difference between a motion and a longer one in which its own time 0 lies at `at_s`, as a share of the motion; infinite where less than
-/// four fifths of it lie within. `None` if they share no joint or the motion does not move.
+/// three tenths of it lie within. `None` if they share no joint or the motion does not move.
 pub fn left_at(motion: &Series, within: &Series, at_s: f64) -> Option<f64> {
     let pairs = pairs(motion, within);
     let [from_s, to_s] = span_s(pairs.iter().map(|pair| pair.0))?;
     let spread_rad = spread_rad(&pairs, from_s, to_s);
-    let left = left_rad(&pairs, [from_s, to_s], at_s + from_s, 1.0, INSTANTS);
+    let left = left_rad(&pairs, [from_s, to_s], (at_s + from_s, 1.0), INSTANTS, PART_COVERED);
     (spread_rad >= LEAST_RAD).then(|| left.map_or(f64::INFINITY, |left_rad| left_rad / spread_rad))
 }
 
 /// The pace at which a motion fits clearly better than at 1, and what is then left, rad.
 fn paced(pairs: &[(&Track, &Track)], [from_s, to_s]: [f64; 2], at_s: f64) -> Option<(f64, f64)> {
     let length_s = to_s - from_s;
-    let left = |pace: f64, at_s: f64| left_rad(pairs, [from_s, to_s], at_s, pace, PACE_INSTANTS);
+    let left = |pace: f64, at_s: f64| left_rad(pairs, [from_s, to_s], (at_s, pace), PACE_INSTANTS, COVERED);
     // About the middle, place and pace hardly depend on each other.
     let place = |pace: f64| {
         let middle_s = at_s + 0.5 * (1.0 - pace) * length_s;
@@ -121,6 +146,7 @@ fn first_look(
     pairs: &[(&Track, &Track)],
     [from_s, to_s]: [f64; 2],
     [earliest_s, latest_s]: [f64; 2],
+    covered: f64,
 ) -> Option<Vec<f64>> {
     if to_s - from_s > LONGEST_S || latest_s - earliest_s > LONGEST_S {
         return None;
@@ -153,7 +179,7 @@ fn first_look(
                 }
             }
         }
-        let enough = seen as f64 >= COVERED * (instants * grids.len()) as f64;
+        let enough = seen as f64 >= covered * (instants * grids.len()) as f64;
         enough.then(|| sum / seen as f64)
     };
     let mut places: Vec<(f64, f64)> =
@@ -173,9 +199,9 @@ fn first_look(
 fn left_rad(
     pairs: &[(&Track, &Track)],
     [from_s, to_s]: [f64; 2],
-    at_s: f64,
-    pace: f64,
+    (at_s, pace): (f64, f64),
     instants: usize,
+    covered: f64,
 ) -> Option<f64> {
     let (mut sum, mut seen) = (0.0, 0_usize);
     for (motion, within) in pairs {
@@ -190,7 +216,7 @@ fn left_rad(
             }
         }
     }
-    (seen as f64 >= COVERED * (instants * pairs.len()) as f64 - 1.0).then(|| (sum / seen as f64).sqrt())
+    (seen as f64 >= covered * (instants * pairs.len()) as f64 - 1.0).then(|| (sum / seen as f64).sqrt())
 }
 
 /// Root mean square of the motion about its mean, joint by joint, rad.
@@ -292,6 +318,20 @@ mod tests {
         }
         let found = locate(&motion(), &other).unwrap();
         assert!(found.rms_rad > found.spread_rad, "{found:?}");
+    }
+
+    #[test]
+    fn a_run_that_was_stopped_or_recorded_late_holds_a_part() {
+        let stopped = locate(&motion(), &within(&[20.0], 25.0)).unwrap();
+        assert!((stopped.at_s - 15.0).abs() < 2e-3 && (stopped.covered - 0.5).abs() < 0.01, "{stopped:?}");
+        let late = within(&[20.0], 60.0).tracks;
+        let from = |track: Track| {
+            let first = track.t_s().partition_point(|t| *t < 23.5);
+            Track::new(track.name(), track.t_s()[first..].to_vec(), track.position()[first..].to_vec(), &[])
+        };
+        let late = Series { tracks: late.into_iter().map(|track| from(track).unwrap()).collect() };
+        let found = locate(&motion(), &late).unwrap();
+        assert!((found.at_s - 15.0).abs() < 2e-3 && (found.covered - 0.65).abs() < 0.01, "{found:?}");
     }
 
     #[test]

@@ -176,8 +176,12 @@ impl Args {
     ) -> Result<CliError, CliError> {
         let joints = request.setup.joint_names();
         let (evaluation, mut lines) = match &failure {
-            PlanFailure::Infeasible(nearest) => {
-                (nearest, broken_lines(&joints, request.task.interval_s[1], nearest))
+            PlanFailure::Infeasible { nearest, stopping_s } => {
+                let mut lines = broken_lines(&joints, request.task.interval_s[1], nearest);
+                lines.extend(stopping_s.map(|stopping_s| {
+                    format!("a plan of {stopping_s:.2} s that stops at every key point keeps them: give each dwell_s = 0")
+                }));
+                (nearest, lines)
             }
             PlanFailure::Ceilings { nearest } => {
                 let longest_s = request.task.interval_s[1];

@@ -7,6 +7,7 @@
 
 mod again;
 mod behind;
+mod by_column;
 mod by_meaning;
 mod clock;
 mod clocks;
@@ -41,6 +42,7 @@ mod lvm;
 mod map;
 mod marks;
 mod name;
+mod named_values;
 mod number;
 mod object_number;
 mod objects;
@@ -77,6 +79,7 @@ pub use again::{is_aside, is_header, other_header};
 pub(in crate::log) use echoed::begins as begins_with_message;
 pub use error::CsvError;
 pub(in crate::log) use map::MAP_BEGINS;
+pub(in crate::log) use named_values::is_named_values;
 pub use objects::JsonLines;
 pub use options::{AngleUnit, Columns, CsvOptions, LengthUnit, Separator};
 pub(in crate::log) use printed::is_rule;
@@ -157,7 +160,9 @@ pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<
     let mut remarks = Remarks::default();
     let table = objects::as_table(&text, &mut remarks)
         .or_else(|| echoed::as_table(&text))
+        .or_else(|| by_column::as_table(&text))
         .or_else(|| printed::as_table(&text))
+        .or_else(|| named_values::as_table(&text))
         .or_else(|| dataset::as_table(&text));
     let text = table.map_or(text, Cow::Owned);
     read_table(name, Cow::Borrowed(&text), options, remarks)

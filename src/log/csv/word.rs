@@ -17,21 +17,21 @@ pub(super) enum Meaning {
 }
 
 const PLANNED: &str = "expected ideal leader target targets tgt ziel vorgabe demanded requested planned plan desired des reference references ref rpos setp setpoint setpoints ipo set sp rsol soll sollwert goal nominal nom demand \
-    wanted consigne req requests dmd tavoite mål målvärde børverdi trajectory traj fuehrung aspos consigna referencia riferimento alvo ohje ohjearvo börvärde zadana zadane \
+    wanted consigne req requests dmd tavoite mål målvärde børverdi trajectory traj fuehrung aspos consigna referencia riferimento alvo ohje ohjearvo börvärde zadana zadane zadany desejado desejada desejados cible hedef gewenst gewenste žádaná požadovaná \
     规划 规划值 计划 期望 期望值 目标 目标值 设定 设定值 给定 给定值 参考 参考值 目標 目標値 設定値 목표 목표값 \
     задание задано заданное заданный уставка план";
 const MEASURED: &str = "pfb fdb estimate observed follower actual act rückmeldung rueckmeldung fdbk estimated measured meas feedback fb fbk fpos process present observation ist istwert real sensor encoder enc pv measurement measurements reached rist \
     mess messwert ms aipos mesure mesuré mesurée mesuree réel réelle reel reelle medido medida misurato misurata attuale mitattu oloarvo är ärvärde måleverdi \
-    zmierzona 实际 实际值 实测 实测值 测量 测量值 反馈 反馈值 当前 当前值 実際 実際値 実測 実測値 現在 現在値 현재 현재값 실제 실제값 측정 측정값 \
+    zmierzona zmierzone zmierzony rzeczywista rzeczywisty aktualna atual ölçülen gemeten skutečná měřená 实际 实际值 实测 实测值 测量 测量值 反馈 反馈值 当前 当前值 実際 実際値 実測 実測値 現在 現在値 현재 현재값 실제 실제값 측정 측정값 \
     факт фактический фактическое текущее измерено измеренное измеренный";
 const COMMAND: &str = "pcmd command commands commanded cmd action actions stell stellwert stellgrösse stellgröße kommando kommandiert befehl gesendet sent commande envoyé envoyée envoye envoyee comando comandado 指令 指令值 指令値 命令 명령";
 const POSITION: &str = "q pos position positions posn ang angle angles winkel lage theta phi posición posicion posizione ángulo \
-    angulo angolo kulma vinkel 角度 转角 位置 각도 위치 угол положение";
+    angulo angolo kulma vinkel ângulo posição posicao kąt pozycja położenie konum açı hoek positie úhel poloha 角度 转角 位置 각도 위치 угол положение";
 const VELOCITY: &str = "qd dq vel velocity velocities velo speed omega geschwindigkeit drehzahl qdot dot vitesse velocidad \
     velocità nopeus hastighet 速度 角速度 转速 속도 скорость";
-const JOINT: &str = "j joint axis achse gelenk ax axes jnt joints eje asse 关节 関節 軸 轴 관절 ось сустав";
+const JOINT: &str = "j joint axis achse gelenk ax axes jnt joints eje asse junta juntas eixo articulação articulacao oś przegub eksen osa axe 关节 関節 軸 轴 관절 ось сустав";
 const TIME: &str = "time timestamp timestamps zeit zeitstempel date datum uhrzeit datetime stamp elapsed temps clock ipoc tiempo tempo \
-    aika tid czas 时间 时刻 時間 時刻 시간 время";
+    aika tid czas zaman tijd čas 时间 时刻 時間 時刻 시간 время";
 const FOREIGN: &str = "qdd ddq ddot acc accel acceleration beschleunigung torque tau effort moment drehmoment current strom \
     voltage spannung power leistung temperature temp temperatur pressure druck flow valve ventil spool \
     force kraft mode status error err fehler deviation abweichung lag schleppfehler tcp tool pose cart \
@@ -205,6 +205,25 @@ mod tests {
         assert_eq!(split("目標角度"), ["目標", "角度"]);
         assert_eq!(split("현재각도"), ["현재", "각도"]);
         assert_eq!(split("målvinkel"), ["mål", "vinkel"]);
+    }
+
+    #[test]
+    fn sides_are_known_in_the_languages_of_those_who_write_them() {
+        let pairs = [
+            ("Junta 1 posição desejada", "Junta 1 posição atual"),
+            ("oś 1 kąt zadany", "oś 1 kąt zmierzony"),
+            ("Eksen 1 hedef açı", "Eksen 1 ölçülen açı"),
+            ("as 1 gewenste hoek", "as 1 gemeten hoek"),
+            ("osa 1 žádaná poloha", "osa 1 skutečná poloha"),
+            ("bras consigne", "bras mesuré"),
+        ];
+        for (planned, measured) in pairs {
+            for (header, role) in [(planned, Role::Planned), (measured, Role::Measured)] {
+                let roles =
+                    words(header).into_iter().filter(|word| word.meaning == Meaning::Role(role)).count();
+                assert_eq!(roles, 1, "{header}");
+            }
+        }
     }
 
     #[test]

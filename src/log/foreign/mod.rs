@@ -20,7 +20,7 @@ use super::{
     csv::{CsvError, CsvOptions, CsvRun, read_csv_bytes},
     error::LogError,
     file::Source,
-    looks::{LOOKED_AT, is_table},
+    looks::{LOOKED_AT, is_document, is_table},
 };
 use crate::remark::Remarks;
 
@@ -51,7 +51,7 @@ pub(super) fn log_of(
             },
             |text| table::log(path, text, columns, remarks),
         ),
-        bytes if is_table(&packed::name_within(path), bytes) => {
+        bytes if [is_table, is_document].iter().any(|is| is(&packed::name_within(path), bytes)) => {
             let text = source.whole().map_err(LogError::file("read", path))?;
             table::log(path, &text, columns, remarks)
         }

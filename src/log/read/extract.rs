@@ -8,7 +8,7 @@ use std::{
 use super::{
     candidates::is_measured,
     content::{Content, Extracted, Route, Source, TopicCount},
-    description, overlap,
+    description,
     parallel::read_blocks,
     recording::{Attachment, FileInfo},
     window::{Window, may_be_of_run},
@@ -34,10 +34,7 @@ pub(super) fn extract(log: &ScannedLog<'_>, options: &ReadOptions) -> Extracted 
     let path = log.files.first().map(|file| file.path.to_owned()).unwrap_or_default();
     let described = log.described;
     let mut out = Extracted { path, described, remarks: log.remarks.clone(), ..Extracted::default() };
-    let mut files: Vec<&ScannedFile<'_>> = log.files.iter().collect();
-    if !log.ordered {
-        files.sort_by_cached_key(|file| (overlap::begins_ns(&file.layout), file.path));
-    }
+    let files = log.in_order();
     for file in &files {
         describe(file, &mut out);
     }

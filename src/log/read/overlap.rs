@@ -1,11 +1,11 @@
-//! Orders the files of one run and rejects files whose samples overlap.
+//! Rejects files of one run whose samples overlap.
 
 use super::{
     candidates::Candidate,
     content::{Content, Extracted, Source},
 };
 use crate::{
-    log::{error::LogError, file::Layout, options::TimeBase, source::Table},
+    log::{error::LogError, options::TimeBase, source::Table},
     units::{NS_PER_S, seconds_since},
 };
 
@@ -14,11 +14,6 @@ const SHARED_S: f64 = 1.0;
 
 /// Parts of one run are no farther apart, s.
 const MOST_APART_S: f64 = 3600.0;
-
-/// When the recorder received the first message of a file, ns; `u64::MAX` if it has no message.
-pub(super) fn begins_ns(layout: &Layout) -> u64 {
-    layout.blocks.iter().map(|block| block.begins_ns).find(|ns| *ns > 0).unwrap_or(u64::MAX)
-}
 
 /// Rejects two files with samples of one joint in one topic for the same time, or far apart: the caller must say
 /// which of them is the run.

@@ -32,7 +32,7 @@ impl ScannedLog<'_> {
         let profile = self.files.first().map_or("", |file| file.layout.profile.as_str());
         let mut log = writer(output, profile)?;
         let (mut copied, mut unknown, mut kept, mut blocks) = (0, 0, Vec::new(), Blocks::new());
-        for file in &self.files {
+        for file in self.in_order() {
             copy_files(&mut log, file, &kept)?;
             let layout = &file.layout;
             let files = layout.attachments.iter().map(|one| one.name.as_str());

@@ -302,6 +302,10 @@ pub(super) fn nearest_lines(evaluation: &PlanEvaluation, joints: &[String]) -> V
 /// What is allowed; of a range the end that is nearer, and on which side of it.
 fn allowed(margin: &Margin) -> String {
     let most = shown(margin.limit, margin.kind, margin.allowed);
+    // At the end itself the side is a matter of rounding.
+    if shown(margin.limit, margin.kind, margin.value) == most {
+        return most;
+    }
     let kept = margin.broken() != (margin.value <= margin.allowed);
     match (margin.limit, kept) {
         (Limit::Position, true) => format!("<= {most}"),
@@ -314,7 +318,7 @@ fn allowed(margin: &Margin) -> String {
 pub(crate) fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation) -> Vec<String> {
     let lines = nearest.broken().into_iter().map(|margin| {
         format!(
-            "{} is {} at {:.2} s, {} is allowed: {} % above it",
+            "{} is {} at {:.2} s, {} is allowed: {} % beyond it",
             subject(margin, joints),
             shown(margin.limit, margin.kind, margin.value),
             margin.t_s,
@@ -344,8 +348,12 @@ fn mended(margin: &Margin, nearest: &PlanEvaluation) -> Option<String> {
              stays between them on its way"
         )),
         Limit::Torque | Limit::RodForce => Some(format!(
-            "that is between key points {before} and {after}, and no more time mends what the weight takes at rest: less payload, \
-             another posture or a wider limit does"
+            "that is {}, and no more time mends what the weight takes at rest: less payload, another posture or a wider limit does",
+            if before < after {
+                format!("between key points {before} and {after}")
+            } else {
+                format!("at key point {after}")
+            }
         )),
         _ => None,
     }

@@ -60,6 +60,7 @@ pub(super) fn phrase(start: &LateStart) -> String {
             format!("{} ms {name} (95 %: {} to {})", ms(part.delay_s), ms(low_s), ms(high_s))
         }
         _ if part.delay_s > 0.0 => format!("{} ms {name}", ms(part.delay_s)),
+        Some([_, high_s]) if high_s >= 0.0005 => format!("{name} of at most {} ms", ms(high_s)),
         Some([_, high_s]) if high_s >= 0.0 => format!("no {name}"),
         _ => format!("less {} ms {name}", ms(-part.delay_s)),
     };
@@ -206,7 +207,8 @@ mod tests {
                 unexplained,
             })
         };
-        assert_eq!(said(part(-0.091, 0.25), none), "147 ms lag, no dead band");
+        assert_eq!(said(part(-0.091, 0.25), none), "147 ms lag, dead band of at most 159 ms");
+        assert_eq!(said(part(-0.091, 0.0911), none), "147 ms lag, no dead band");
         assert_eq!(said(part(-0.091, 0.05), none), "147 ms lag, less 91 ms dead band");
         let limit = Part { delay_s: -0.002, ..none };
         assert_eq!(said(part(0.2, 0.1), limit), "200 ms dead band, 147 ms lag, less 2 ms limits");

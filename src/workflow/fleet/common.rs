@@ -9,6 +9,8 @@ use crate::math::{column_levels, row_weights, step_scatter, whole};
 const FEWEST_MACHINES: usize = 4;
 /// With so many machines one of them hardly bends what all do.
 const MANY: usize = 10;
+/// Largest share of what is common that one machine tells, however quiet it is.
+const MOST_SHARE: f64 = 0.3;
 /// Days are told apart by so many at most.
 const MOST_BINS: usize = 200;
 /// Share of the instants of a joint at which it must be known.
@@ -44,7 +46,8 @@ impl Common {
         let scatter = |joint: &&&Leveled| {
             step_scatter(joint.levels.iter().map(|level| shared(metric, level.1, joint.usual)))
         };
-        let weights = row_weights(&joints.iter().map(scatter).collect::<Vec<_>>());
+        let mut weights = row_weights(&joints.iter().map(scatter).collect::<Vec<_>>());
+        bound(&mut weights, &joints.iter().map(|joint| joint.machine.as_str()).collect::<Vec<_>>());
         let mut levels = column_levels(&rows, &weights, bins);
         for (bin, level) in levels.iter_mut().enumerate() {
             let known = joints.iter().zip(&rows).filter(|(_, row)| row[bin].is_finite());
@@ -112,6 +115,21 @@ impl Commons {
     }
 }
 
+/// Lessens the weights of joints of machines that tell more than [`MOST_SHARE`] of all.
+fn bound(weights: &mut [f64], machines: &[&str]) {
+    const SWEEPS: usize = 30;
+    let names: BTreeSet<&str> = machines.iter().copied().collect();
+    for machine in names.iter().cycle().take(SWEEPS * names.len()) {
+        let own = || machines.iter().map(|of| of == machine);
+        let sum =
+            |is: bool| weights.iter().zip(own()).filter(|(_, own)| *own == is).map(|(w, _)| w).sum::<f64>();
+        let by = MOST_SHARE / (1.0 - MOST_SHARE) * sum(false) / sum(true);
+        if by < 1.0 {
+            weights.iter_mut().zip(own()).filter(|(_, own)| *own).for_each(|(weight, _)| *weight *= by);
+        }
+    }
+}
+
 /// Between the points around an instant; `None` outside them.
 fn interpolated(points: &[(f64, f64)], at: f64) -> Option<f64> {
     let after = points.partition_point(|point| point.0 < at);
@@ -153,5 +171,16 @@ mod tests {
             }
         }
         assert!(Commons::of(&joints[..4]).at(&joints[0]).is_none(), "three others tell nothing");
+    }
+
+    #[test]
+    fn one_quiet_machine_is_not_what_all_do() {
+        let noise = |machine: u32, t: f64| 0.1 * (f64::from(machine) * 7.0 + t * t).sin();
+        let mut joints: Vec<Leveled> =
+            (0..6).map(|machine| joint(machine, |t| f64::from(machine + 1) * noise(machine, t))).collect();
+        let rises = |t: f64| 0.01 * noise(5, t) + if t > 45.0 { 3.0 } else { 0.0 };
+        joints[5] = joint(5, rises);
+        let common = Commons::of(&joints).at(&joints[0]).unwrap();
+        assert!(common.iter().all(|level| level.abs() < 0.15), "{common:?}");
     }
 }

@@ -79,7 +79,7 @@ pub enum JoinFailure {
     NothingSent(#[source] LogError),
     #[error(
         "the plan in {} is nowhere in what was sent on {topic}: no common joint, no motion, or a log that \
-         holds less than four fifths of it; --planned names another topic, --at SECONDS the time",
+         holds too little of it; --planned names another topic, --at SECONDS the time",
         plan.display()
     )]
     Nowhere { plan: PathBuf, topic: String },
@@ -108,6 +108,12 @@ pub enum JoinFailure {
         plan.display()
     )]
     OtherPace { plan: PathBuf, topic: String, longer: bool },
+    #[error(
+        "the log measures {measured} and the plan in {} moves {planned}: no joint of both; a plan whose joints have the names of the log is \
+         needed, or a recording with those of the plan (of a table: hydrotrace import --measured JOINT=COLUMN)",
+        plan.display()
+    )]
+    OtherJoints { plan: PathBuf, measured: String, planned: String },
     #[error(
         "a log is joined as it was recorded, in lengths of cylinders, and the plan beside it would be in angles: leave out \
          --hydraulics and give a plan in lengths; `hydrotrace export PLAN --hydraulics FILE --as cylinders` makes one"
@@ -166,6 +172,11 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
             LogError::Missing { missing: "planned", .. } => JoinFailure::NothingSent(error),
             other => other.into(),
         })?;
+    let names = |series: &Series| series.tracks.iter().map(Track::name).collect::<Vec<_>>().join(", ");
+    if !plan.planned.tracks.iter().any(|track| run.measured.track(track.name()).is_some()) {
+        let (measured, planned) = (names(&run.measured), names(&plan.planned));
+        return Err(JoinFailure::OtherJoints { plan: inputs.plan.clone(), measured, planned });
+    }
     // A run that was read without a plan has none.
     let sent = (!run.planned.tracks.is_empty()).then_some(&run.planned);
     let topic = format!("{}:{}", run.source.planned_topic, run.source.planned_field);

@@ -78,6 +78,13 @@ impl Plan {
         if !commanded && self.command.is_some() {
             remarks.add(Code::SentOtherwise, 1, the_plan(path, topic));
         }
+        if found.covered < 1.0 {
+            let doubt = format!(
+                "what was sent on {topic} has {:.0} % of the plan: the run was stopped, or its recording began late",
+                100.0 * found.covered
+            );
+            remarks.add(Code::Unmatched, 1, doubt);
+        }
         let message = "other places fit as well, the first is taken; --at SECONDS names another";
         remarks.add(Code::Ambiguous, found.others as u64, message);
         Ok((commanded, found))

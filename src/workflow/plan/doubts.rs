@@ -2,7 +2,7 @@
 
 use super::PlanRequest;
 use crate::{
-    plan::{BETWEEN, Interpolation, Limit, PlanError, PlanEvaluation},
+    plan::{BETWEEN, Interpolation, Limit, PlanError, PlanEvaluation, Setup, fastest},
     remark::{Code, Remarks},
     task::Objective,
 };
@@ -14,7 +14,72 @@ const ABOVE: f64 = 1e-3;
 const SHORTEST: f64 = 1.01;
 const FAR: f64 = 0.6;
 
+/// Share of the time of the fastest plan that stops at every key point have to save to be told.
+const SAVED: f64 = 0.05;
+
+/// Evaluations of its search, of which a tenth of a second has many.
+const STOPPING: u64 = 1600;
+
 impl PlanRequest {
+    /// Remarks on the task itself, whatever its plan.
+    pub(super) fn of_key_points(&self) -> Remarks {
+        let (setup, mut remarks) = (&self.setup, Remarks::default());
+        let weightless = setup.arm().chain.weightless();
+        if !weightless.is_empty() && setup.payload_kg().iter().all(|mass_kg| *mass_kg <= 0.0) {
+            let message = format!(
+                "the arm's file gives no mass to what {} turns: torques and power of nothing",
+                weightless.join(", ")
+            );
+            remarks.add(Code::NoMass, weightless.len() as u64, message);
+        }
+        if let [first, ..] = setup.stops() {
+            let message = format!(
+                "key point {} and the one beside it are the same: the arm stops there; dwell_s says for how long",
+                first + 1
+            );
+            remarks.add(Code::EqualKeyPoints, setup.stops().len() as u64, message);
+        }
+        if let [first, ..] = setup.range_ends() {
+            let message = format!(
+                "the range of a joint ends at key point {}: the arm stops there; a little more range lets it pass",
+                first + 1
+            );
+            remarks.add(Code::RangeEnd, setup.range_ends().len() as u64, message);
+        }
+        remarks
+    }
+
+    /// Duration of the fastest plan that stops at every key point, s, dwells included; `None` where every plan of the task does, or
+    /// none keeps the limits.
+    pub(super) fn stopping_s(&self) -> Option<f64> {
+        let mut task = self.task.clone();
+        let last = task.points.len().saturating_sub(1);
+        let passed =
+            |point: usize| !self.setup.stops().contains(&point) && !self.setup.range_ends().contains(&point);
+        let mut more = false;
+        for (point, key) in task.points.iter_mut().enumerate().take(last).skip(1) {
+            more |= key.dwell_s.is_none() && passed(point);
+            key.dwell_s = key.dwell_s.or(Some(0.0));
+        }
+        let setup = more.then(|| Setup::new(&task, self.setup.arm().clone()).ok())??;
+        Some(fastest(&setup, STOPPING)?.objectives[Objective::Duration])
+    }
+
+    /// What is said of a task whose plans by times alone swing so far between key points that stops would be faster.
+    pub(super) fn slower_than_stops(&self, fastest_s: f64) -> Remarks {
+        let mut remarks = Remarks::default();
+        if let Some(stopping_s) =
+            self.stopping_s().filter(|stopping_s| *stopping_s < (1.0 - SAVED) * fastest_s)
+        {
+            let message = format!(
+                "by times alone the fastest plan takes {fastest_s:.2} s, and one that stops at every key point (dwell_s = 0) \
+                 {stopping_s:.2} s: between these key points a smooth curve swings far; --shape free seeks another"
+            );
+            remarks.add(Code::StopsAreFaster, 1, message);
+        }
+        remarks
+    }
+
     /// Remarks on a plan of the task: what a controller's curve breaks through the points of its trajectory.
     ///
     /// # Errors

@@ -30,9 +30,9 @@ pub enum PlanFailure {
     Arm(#[from] ArmError),
     #[error(transparent)]
     Plan(Box<PlanError>),
-    /// No timing keeps all limits; what the nearest one breaks.
+    /// No timing keeps all limits; what the nearest one breaks, and what a plan takes that stops at every key point, if one keeps them.
     #[error("no plan keeps all limits")]
-    Infeasible(Box<PlanEvaluation>),
+    Infeasible { nearest: Box<PlanEvaluation>, stopping_s: Option<f64> },
     #[error("no plan keeps to the ceilings of the task")]
     Ceilings { nearest: Box<PlanEvaluation> },
 }

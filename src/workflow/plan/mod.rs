@@ -16,7 +16,7 @@ use crate::{
         Choice, NoShape, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Timing, bought, ends,
         near, search,
     },
-    remark::{Code, Remarks},
+    remark::Remarks,
     task::{Ceilings, Objective, Objectives, Task, Weights},
 };
 use convergence::Growth;
@@ -133,33 +133,16 @@ pub fn run(
     let Some(ends) = ends(&found.front) else {
         let nearest =
             found.nearest.ok_or(PlanError::Times { found: 0, expected: setup.interval_count() + 1 })?;
-        return Err(PlanFailure::Infeasible(Box::new(evaluation(&nearest)?)));
+        let nearest = Box::new(evaluation(&nearest)?);
+        return Err(PlanFailure::Infeasible { nearest, stopping_s: request.stopping_s() });
     };
     let weights = options.weights.or(task.weights);
     let rule = options.rule.unwrap_or(if weights.is_some() { Rule::Weights } else { Rule::Ideal });
     let (choice, own) = chosen(setup, task, options.shape, (&found.front, (rule, weights)))?;
-    let mut remarks = Remarks::default();
-    let weightless = setup.arm().chain.weightless();
-    if !weightless.is_empty() && setup.payload_kg().iter().all(|mass_kg| *mass_kg <= 0.0) {
-        let message = format!(
-            "the arm's file gives no mass to what {} turns: torques and power of nothing",
-            weightless.join(", ")
-        );
-        remarks.add(Code::NoMass, weightless.len() as u64, message);
-    }
-    if let [first, ..] = setup.stops() {
-        let message = format!(
-            "key point {} and the one beside it are the same: the arm stops there; dwell_s says for how long",
-            first + 1
-        );
-        remarks.add(Code::EqualKeyPoints, setup.stops().len() as u64, message);
-    }
-    if let [first, ..] = setup.range_ends() {
-        let message = format!(
-            "the range of a joint ends at key point {}: the arm stops there; a little more range lets it pass",
-            first + 1
-        );
-        remarks.add(Code::RangeEnd, setup.range_ends().len() as u64, message);
+    let mut remarks = request.of_key_points();
+    let fastest_s = found.front.first().map(|timing| timing.objectives[Objective::Duration]);
+    if let Some(fastest_s) = fastest_s.filter(|_| own.shaped.is_none()) {
+        remarks.extend(request.slower_than_stops(fastest_s));
     }
     let objectives = || found.front.iter().map(|timing| timing.objectives.plan());
     let largest = |k| found.front.iter().map(|timing| timing.objectives[k]).fold(0.0, f64::max);

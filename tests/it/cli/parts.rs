@@ -38,6 +38,9 @@ fn the_parts_of_a_run_become_one_log_and_no_command_is_made_of_a_part() {
     }
     let gathered = clean(at, "join run.mcap run-2.mcap -o whole.mcap --json");
     hold_to_schema(&serde_json::from_str(&gathered).unwrap(), "gathered.v1");
+    // In whatever order a shell names them.
+    clean(at, "join run-2.mcap run.mcap -o turned.mcap");
+    assert!(fs::read(at.join("turned.mcap")).unwrap() == fs::read(at.join("whole.mcap")).unwrap());
     let starts = |line: &str| json(at, line)["transitions"].as_array().unwrap().len();
     assert_eq!((starts("report run.mcap run-2.mcap"), starts("report whole.mcap")), (2, 2));
     // Cut in motion they are no runs; cut at rest they may be.

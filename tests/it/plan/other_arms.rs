@@ -86,6 +86,17 @@ fn at_a_key_point_at_the_end_of_a_range_the_arm_stops() {
     assert!(wide.remarks.as_slice().iter().all(|remark| remark.code != Code::RangeEnd));
 }
 
+/// To and fro of one joint, a long way of the other, to and fro: a smooth curve swings far between such key points.
+#[test]
+fn where_stops_are_faster_that_is_said_and_where_they_are_not_nothing_is() {
+    let pick = [[0.0, 0.0], [0.0, 40.0], [0.0, 0.0], [90.0, 0.0], [90.0, 40.0], [90.0, 0.0]];
+    for (points, said) in [(&pick[..], true), (&POINTS[..], false)] {
+        let found = planned(arm(""), task(points, [-170.0, 170.0]), Shaping::Timing).unwrap();
+        let remark = found.remarks.as_slice().iter().find(|remark| remark.code == Code::StopsAreFaster);
+        assert_eq!(remark.is_some(), said, "{}", duration_s(&found));
+    }
+}
+
 /// As a URDF rounds half of a turn, and a task does not.
 #[test]
 fn a_key_point_beyond_the_end_of_a_range_by_rounding_is_at_it() {
