@@ -190,6 +190,9 @@ impl Knowledge {
     pub(super) fn feed_forward(&self, problem: &Problem, x: &[f64]) -> Estimated {
         let part = (FEED_FORWARD, problem.priors.of(FEED_FORWARD).deviation);
         let model = problem.model(x);
+        if !problem.shown.feed_forward {
+            return Estimated { value: Some(0.0), ..Estimated::default() };
+        }
         let sharp = behind(problem, discrepancy::FEED_FORWARD);
         let missed = self.missed(sharp, sharp.max(discrepancy::SMOOTH_FEED_FORWARD));
         let found = self.positive(model.feed_forward, &[part], missed);
@@ -198,10 +201,11 @@ impl Knowledge {
         Estimated { identified: found.identified && sure, ..found }
     }
 
-    /// A number that a filter of set values changes: in a loop without feed-forward one acts as a lower gain, more lag and
-    /// another dead band, and no log of angles tells them apart.
+    /// A number that a filter of set values changes: in a loop that may be without feed-forward one acts as a lower gain, more lag and
+    /// another dead band. Where the data show none, the rivals with late set values tell how far.
     fn unfiltered(&self, problem: &Problem, x: &[f64], found: Estimated) -> Estimated {
-        Estimated { identified: found.identified && self.feed_forward(problem, x).identified, ..found }
+        let sure = !problem.shown.feed_forward || self.feed_forward(problem, x).identified;
+        Estimated { identified: found.identified && sure, ..found }
     }
 
     /// The position gain. Smooth runs do not identify it: they show by how much the joint is behind at a speed, and a delay

@@ -6,7 +6,7 @@ use super::{
     censor::{ASKED, seen, sustained},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
-    integral,
+    feed_forward, integral,
     interval::{Knowledge, discrepancy},
     outcome::JointFit,
     parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown, Valve},
@@ -70,6 +70,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
             valve: Valve::default(),
             late: false,
             integral: true,
+            feed_forward: true,
         },
         part: Part::All,
         inefficiency: INEFFICIENCY,
@@ -104,14 +105,18 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         problem.shown.valve.edge = true;
         found = edged;
     }
-    let mut rival = None;
+    if let Some(without) = feed_forward::without(&problem, &found, &mut workspace) {
+        problem.shown.feed_forward = false;
+        found = without;
+    }
+    let mut rivals = Vec::new();
     match SetValues::of(&problem, &found, &mut workspace) {
-        SetValues::Late(late, prompt) => {
-            problem.shown.late = true;
+        SetValues::Late(late, shown, prompt) => {
+            problem.shown = shown;
             found = late;
-            rival = prompt;
+            rivals.extend(prompt);
         }
-        SetValues::MayBeLate(model) => rival = Some(model),
+        SetValues::MayBeLate(models) => rivals = models,
         SetValues::Prompt => {}
     }
     if some.len() < runs.len() {
@@ -140,10 +145,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     let nothing = skill.explains_nothing() || stands(runs);
     let skill = if nothing { skill.without_model(&held_out) } else { skill };
     let joint = report(named, &problem, &found, &knowledge, reached, samples, &skill);
-    let joint = match rival {
-        Some(rival) => joint.with_rival(&rival),
-        None => joint,
-    };
+    let joint = rivals.iter().fold(joint, JointFit::with_rival);
     let joint = if nothing { joint.without_model() } else { joint };
     let ratios = skill.starts.iter().flatten().filter_map(HeldOutStart::ratio).collect();
     let runs = held_out.iter().zip(&skill.errors).zip(&skill.starts);

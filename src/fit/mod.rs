@@ -19,6 +19,7 @@ mod estimate;
 mod estimated;
 mod excite;
 mod excited;
+mod feed_forward;
 mod held_out;
 mod integral;
 mod interval;
@@ -175,6 +176,11 @@ pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), Fit
     let named: Vec<(String, JointKind)> =
         joints.iter().map(|joint| (joint.name.clone(), joint.kind)).collect();
     let shared = shared::shared(&named, logs);
+    for sharing in shared.iter().flat_map(|shared| &shared.joints) {
+        for joint in joints.iter_mut().filter(|joint| joint.name == sharing.name) {
+            joint.makes_alone(sharing.alone_rad_s);
+        }
+    }
     let fit =
         Fit { joints, left_out, margin_starts: ratios.len(), peak_margin: skill::margin(ratios), shared };
     Ok((fit, held_out))

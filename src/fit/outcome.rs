@@ -152,6 +152,8 @@ impl Fit {
 
 /// A joint that is sent this share of its largest speed may be at it: what it is late by is made up for faster.
 const NEAR: f64 = 0.8;
+/// A limit of this share of what a joint makes alone is its own.
+const OWN: f64 = 0.9;
 
 impl JointFit {
     /// Every number that is told of a joint, by its name with its unit.
@@ -223,6 +225,16 @@ impl JointFit {
         if most.is_some_and(|most| most < speed_rad_s) {
             let lower_bound = Some(speed_rad_s);
             (*limit, *model) = (Estimated { lower_bound, ..Estimated::default() }, None);
+        }
+    }
+
+    /// Takes in the speed that the joint makes with all of what it shares with others, rad/s: a limit below it is what the others left. The
+    /// model keeps it for what the same plan does again.
+    pub(super) fn makes_alone(&mut self, alone_rad_s: f64) {
+        for limit in [&mut self.speed_limit_growing_rad_s, &mut self.speed_limit_shrinking_rad_s] {
+            if limit.value.is_some_and(|most| most < OWN * alone_rad_s) {
+                *limit = Estimated { lower_bound: limit.lower_bound, ..Estimated::default() };
+            }
         }
     }
 

@@ -97,6 +97,8 @@ pub(super) struct Shown {
     pub(super) late: bool,
     /// Integral action of the position loop.
     pub(super) integral: bool,
+    /// Speed that is fed forward.
+    pub(super) feed_forward: bool,
 }
 
 impl Shown {
@@ -107,6 +109,7 @@ impl Shown {
             FILTER | SET_VALUE_DELAY => self.late,
             BEYOND => self.valve.beyond,
             INTEGRAL_GAIN => self.integral,
+            FEED_FORWARD => self.feed_forward,
             LIMITS.. => self.limits.get(parameter - LIMITS).is_none_or(|shown| *shown),
             _ => true,
         }
@@ -147,7 +150,7 @@ impl Priors {
             time_constant_s: value(TIME_CONSTANT),
             position_gain_1_s: value(POSITION_GAIN),
             integral_gain_1_s2: if shown.integral { value(INTEGRAL_GAIN) } else { 0.0 },
-            feed_forward: value(FEED_FORWARD),
+            feed_forward: if shown.feed_forward { value(FEED_FORWARD) } else { 0.0 },
             asymmetry: value(ASYMMETRY),
             dead_band_rad_s: value(DEAD_BAND),
             dead_band_centre_rad_s: value(CENTRE),

@@ -3,7 +3,7 @@
 use super::{
     estimate::{Estimate, Problem, Workspace},
     model::Model,
-    parameters::{DEAD_TIME, FEED_FORWARD, FILTER, LIMITS, SET_VALUE_DELAY},
+    parameters::{DEAD_TIME, FEED_FORWARD, FILTER, LIMITS, SET_VALUE_DELAY, Shown},
 };
 
 /// The cost, a logarithm of likelihood, must fall by this.
@@ -31,43 +31,51 @@ const STARTS: [[f64; 3]; 2] = [[0.1, 0.15, 0.9], [0.15, 0.05, 0.05]];
 
 /// What late set values make of an estimate with prompt ones.
 pub(super) enum SetValues {
-    /// The data show them; with the model of prompt ones where those come so little late that these may hold.
-    Late(Estimate, Option<Model>),
+    /// The data show them, in a model that has these parts; with the model of prompt ones where those come so little late that these may
+    /// hold.
+    Late(Estimate, Shown, Option<Model>),
     /// They hardly tell them from prompt ones.
-    MayBeLate(Model),
+    MayBeLate(Vec<Model>),
     /// Late ones explain the data worse, or what they explain has another cause.
     Prompt,
 }
 
 impl SetValues {
+    /// A loop without feed-forward is tried with one, too: behind a filter it is one without.
     pub(super) fn of(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Self {
-        let mut other = problem.clone();
-        other.shown.late = true;
-        let place = |i: usize, value: f64| problem.priors.of(i).place(value);
-        let mut start = found.x.clone();
-        start[DEAD_TIME] = place(DEAD_TIME, DEAD_TIME_S);
-        let anew = STARTS.map(|[filter_s, delay_s, feed_forward]| {
-            let mut x = start.clone();
-            x[..LIMITS].fill(0.0);
-            x[DEAD_TIME] = place(DEAD_TIME, DEAD_TIME_S);
-            x[FEED_FORWARD] = place(FEED_FORWARD, feed_forward);
-            x[FILTER] = place(FILTER, filter_s);
-            x[SET_VALUE_DELAY] = place(SET_VALUE_DELAY, delay_s);
-            x
-        });
-        let best = other.search(std::iter::once(start).chain(anew), workspace);
         let before = problem.cost_at(&found.x, found.scale_rad, workspace);
-        let gained = before - other.cost_at(&best.x, found.scale_rad, workspace);
-        let model = other.model(&best.x);
-        let stands_in =
-            model.set_values_late_s() < SHORTEST_S || model.position_gain_1_s * model.lag_s() > RINGS;
-        if stands_in || gained < -AS_GOOD {
-            Self::Prompt
-        } else if gained < GAIN {
-            Self::MayBeLate(model)
-        } else {
-            let unsure = model.set_values_late_s() < SURELY_LATE_S;
-            Self::Late(best, unsure.then(|| problem.model(&found.x)))
+        let mut models = Vec::new();
+        for feed_forward in if problem.shown.feed_forward { vec![true] } else { vec![true, false] } {
+            let mut other = problem.clone();
+            other.shown.late = true;
+            other.shown.feed_forward = feed_forward;
+            let best = other.search(starts(problem, found), workspace);
+            let gained = before - other.cost_at(&best.x, found.scale_rad, workspace);
+            let model = other.model(&best.x);
+            let stands_in =
+                model.set_values_late_s() < SHORTEST_S || model.position_gain_1_s * model.lag_s() > RINGS;
+            if !stands_in && gained >= GAIN {
+                let unsure = model.set_values_late_s() < SURELY_LATE_S;
+                return Self::Late(best, other.shown, unsure.then(|| problem.model(&found.x)));
+            }
+            models.extend((!stands_in && gained >= -AS_GOOD).then_some(model));
         }
+        if models.is_empty() { Self::Prompt } else { Self::MayBeLate(models) }
     }
+}
+
+fn starts(problem: &Problem, found: &Estimate) -> Vec<Vec<f64>> {
+    let place = |i: usize, value: f64| problem.priors.of(i).place(value);
+    let mut start = found.x.clone();
+    start[DEAD_TIME] = place(DEAD_TIME, DEAD_TIME_S);
+    let anew = STARTS.map(|[filter_s, delay_s, feed_forward]| {
+        let mut x = start.clone();
+        x[..LIMITS].fill(0.0);
+        x[DEAD_TIME] = place(DEAD_TIME, DEAD_TIME_S);
+        x[FEED_FORWARD] = place(FEED_FORWARD, feed_forward);
+        x[FILTER] = place(FILTER, filter_s);
+        x[SET_VALUE_DELAY] = place(SET_VALUE_DELAY, delay_s);
+        x
+    });
+    std::iter::once(start).chain(anew).collect()
 }

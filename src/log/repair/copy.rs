@@ -51,6 +51,7 @@ pub(super) struct Copier {
     channels: BTreeMap<u16, u16>,
     /// Messages so far of channels that the old log does not define, left out.
     pub(super) unknown: u64,
+    left_out: Vec<u16>,
 }
 
 impl Copier {
@@ -59,6 +60,7 @@ impl Copier {
             definitions: Definitions::gather(&file.layout, file.source, true),
             channels: BTreeMap::new(),
             unknown: 0,
+            left_out: Vec::new(),
         }
     }
 
@@ -67,12 +69,21 @@ impl Copier {
         self.definitions.channels.values().any(|channel| channel.topic == topic)
     }
 
+    /// Leaves out the messages of a topic; they count as copied no more.
+    pub(super) fn leave_out(&mut self, topic: &str) {
+        let own = self.definitions.channels.iter().filter(|(_, channel)| channel.topic == topic);
+        self.left_out = own.map(|(id, _)| *id).collect();
+    }
+
     /// Whether the message could be copied.
     pub(super) fn message<W: Write + Seek>(
         &mut self,
         writer: &mut mcap::Writer<W>,
         message: &MessageRecord<'_>,
     ) -> Result<bool, CopyError> {
+        if self.left_out.contains(&message.channel_id) {
+            return Ok(false);
+        }
         let channel_id = match self.channels.entry(message.channel_id) {
             Entry::Occupied(known) => *known.get(),
             Entry::Vacant(new) => {

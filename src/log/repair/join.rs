@@ -39,6 +39,8 @@ pub struct Addition<'a> {
     pub sent: Option<[&'a str; 2]>,
     /// Whether the log has this plan on our topic, and keeps it.
     pub keeps_plan: bool,
+    /// Whether what the log has on our topic is what was sent, and is left out.
+    pub replaces_plan: bool,
     /// Files, in place of those of their names.
     pub files: &'a [Attachment],
     /// Names and entries of metadata, in place of those of these names.
@@ -57,11 +59,14 @@ impl ScannedLog<'_> {
         let topics = Topics::default();
         let mut commands = true;
         for file in &self.files {
-            let copier = Copier::of(file);
-            if copier.has(&topics.planned) && !addition.keeps_plan {
+            let mut copier = Copier::of(file);
+            if copier.has(&topics.planned) && !addition.keeps_plan && !addition.replaces_plan {
                 return Err(LogError::Planned { path: file.path.to_owned(), topic: topics.planned });
             }
             commands &= !copier.has(&topics.command);
+            if addition.replaces_plan {
+                copier.leave_out(&topics.planned);
+            }
             parts.push((file, copier));
         }
         let written = write_atomically::<_, CopyError>(output, |file| {

@@ -62,8 +62,9 @@ fn answers(comparison: &Comparison) -> Vec<String> {
 
 /// Joints whose own interval leaves out zero, where not all do what is said of all.
 fn joints(comparison: &Comparison, peaks: &[&Summary]) -> Option<String> {
+    let by_runs = peaks.iter().any(|peak| peak.by_runs.is_some());
     let said = |summary: &Summary| {
-        let [low, high] = summary.interval_95.filter(|[low, high]| *low > 0.0 || *high < 0.0)?;
+        let [low, high] = summary.interval_95.filter(|_| summary.leaves_out_zero(by_runs))?;
         let Scope::Joint(joint) = &summary.scope else { return None };
         let (dimension, kind) = (summary.measure.dimension, kind(comparison, &summary.scope));
         let shown = |value: f64| signed(value, |value| with_unit(dimension, kind, value));
@@ -76,13 +77,10 @@ fn joints(comparison: &Comparison, peaks: &[&Summary]) -> Option<String> {
     let (of_peaks, of_delays) = (of(PEAK_ERROR), of(ONSET_DELAY));
     let alike = |verdict: &Verdict| peaks.iter().all(|peak| peak.verdict == *verdict);
     let unlike = |found: &[(Verdict, String)]| found.iter().any(|(verdict, _)| !alike(verdict));
-    let differ = if peaks.iter().any(|peak| peak.by_runs.is_some()) {
-        let some = !of_peaks.is_empty() && of_peaks.len() < comparison.joints.len();
-        some || unlike(&of_peaks) || unlike(&of_delays)
-    } else {
-        // Of few starts in a pair of runs the intervals are too easily off zero.
-        !alike(&Verdict::TooFew) && unlike(&of_peaks)
-    };
+    let some = by_runs && !of_peaks.is_empty() && of_peaks.len() < comparison.joints.len();
+    let tested = by_runs || !alike(&Verdict::TooFew);
+    let differ =
+        some || tested && unlike(&of_peaks) || unlike(&of_delays) || !by_runs && !of_delays.is_empty();
     let named = [("peak error ", of_peaks), ("start delay ", of_delays)].map(|(what, found)| {
         let each: Vec<String> = found.into_iter().map(|(_, text)| text).collect();
         (!each.is_empty()).then(|| what.to_owned() + &each.join(", "))

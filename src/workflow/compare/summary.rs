@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     math::median,
-    replay::{Keyed, Kind, Metric, Row, Rules, Transition},
+    replay::{Keyed, Kind, Metric, ONSET_DELAY, Row, Rules, Transition},
     series::JointKind,
 };
 
@@ -71,7 +71,16 @@ pub struct Summary {
     pub verdict: Verdict,
 }
 
+/// In a pair of runs few starts of a joint are too easily alike: its delay changed where the mean is so many times half its interval.
+const CLEARLY: f64 = 4.0;
+
 impl Summary {
+    /// Whether the interval of the mean leaves out zero; that of delays in a pair of runs clearly.
+    pub fn leaves_out_zero(&self, by_runs: bool) -> bool {
+        let times = if by_runs || self.measure.key != ONSET_DELAY { 1.0 } else { CLEARLY };
+        self.interval_95.is_some_and(|[low, high]| (low + high).abs() > times * (high - low))
+    }
+
     /// The least p that so many events can have: that of all of one sign.
     pub fn least_p(&self) -> f64 {
         0.5_f64.powi(i32::try_from(self.events.saturating_sub(1)).unwrap_or(i32::MAX))

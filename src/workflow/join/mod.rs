@@ -201,6 +201,9 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
             plan.check_command(&command.series, &inputs.plan, &command.topic)?;
         }
     }
+    // A table calls what was sent its plan.
+    let replaces_plan =
+        commanded && plan.command.is_some() && run.source.planned_topic == Topics::default().planned;
     let (start_s, end_s) = (zero_s + from_s, zero_s + to_s);
     let measured_s = run.measured.span_s().unwrap_or_default();
     if inputs.at_s.is_some() && (start_s > measured_s[1] || end_s < measured_s[0]) {
@@ -240,8 +243,9 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         samples,
         log_delay_ns: received.flatten().map_or(0, |[middle_s, _]| nanoseconds(middle_s)),
         keeps_plan,
+        replaces_plan,
         sent: sent
-            .filter(|_| !keeps_plan)
+            .filter(|_| !keeps_plan && !replaces_plan)
             .map(|_| [run.source.planned_topic.as_str(), run.source.planned_field.as_str()]),
         files: carried.files(),
         metadata: carried.metadata(),

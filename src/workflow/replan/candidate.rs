@@ -150,7 +150,8 @@ impl Maker<'_> {
         let learning = Learning { gain, keep, anew, follow: kept && history.follows, ..inputs.learning };
         let subject = Subject::new(&plan, motion, *setup);
         let points_hz = subject.points_hz;
-        let command = precompensates.then(|| commanded(fit, &subject, &trials, learning)).transpose()?;
+        let corrects = *precompensates && (kept || !self.starved());
+        let command = corrects.then(|| commanded(fit, &subject, &trials, learning)).transpose()?;
         let sent = command.as_ref().map_or(&plan, |command| &command.series);
         // What is kept may have come since with some joints sent something else.
         let again = keep.and_then(|_| history.sent_in(sent));
@@ -164,6 +165,12 @@ impl Maker<'_> {
         let (predicted, responses) = promised(fit, &plan, sent, base, learnt, &inputs.rules)?;
         let predicted = if kept { predicted.unsteady(history.unsteady_rad()) } else { predicted };
         Ok(Candidate { new, plan, points_hz, command, predicted, responses })
+    }
+
+    /// Whether joints were held back in the last run by what they share: of how they go where that is enough the run says nothing.
+    pub(super) fn starved(&self) -> bool {
+        let asked = self.fit.shared.as_ref().and_then(|shared| shared.asked(&self.last.plan));
+        asked.is_some_and(|(asked, _)| asked > 1.0)
     }
 
     /// What the newest run tells of another timing.

@@ -1,6 +1,6 @@
 //! `join` of a log in which another command of the same plan was sent: the plans are so alike that each fits where another was sent.
 
-use crate::support::{clean as done, run_line as hydrotrace, sample, stderr};
+use crate::support::{clean as done, json, run_line as hydrotrace, sample, stderr};
 
 #[test]
 fn another_command_of_the_same_plan_is_refused_with_its_share_at_a_given_time_too() {
@@ -26,4 +26,30 @@ fn another_command_of_the_same_plan_is_refused_with_its_share_at_a_given_time_to
         let share: f64 = share.split(' ').next().and_then(|share| share.parse().ok()).unwrap_or(f64::NAN);
         assert!((share - 50.0).abs() < 5.0 && said.contains("--gain"), "{line}: {said}");
     }
+}
+
+/// A PLC's set value is what was sent to it: the corrected command, which a table calls its plan.
+#[test]
+fn what_a_table_calls_its_plan_may_be_what_was_sent() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::copy(sample("tasks/task-1.toml"), at.join("task-1.toml")).unwrap();
+    for line in [
+        "plan task-1.toml --times 0,4.49,8.09,12.39,18.79,21.85 -o plan.mcap",
+        "simulate plan.mcap -o run.mcap",
+        "replan run.mcap --keep-plan -o next.mcap",
+        "simulate next.mcap -o whole.mcap",
+        "export whole.mcap --csv --planned /command/joint_states -o plc.csv",
+        "join plc.csv --plan next.mcap -o joined.mcap",
+    ] {
+        done(at, line);
+    }
+    let [joined, whole] = ["joined", "whole"].map(|name| json(at, &format!("report {name}.mcap")));
+    let peaks_rad = |report: &serde_json::Value| {
+        let starts = report["transitions"].as_array().unwrap().iter();
+        starts.filter_map(|start| start["peak_error"].as_f64()).sum::<f64>()
+    };
+    let [found, expected] = [&joined, &whole].map(peaks_rad);
+    assert!((found / expected - 1.0).abs() < 0.05, "{found} {expected}");
+    assert!(joined["promised"].is_object(), "{}", joined["promised"]);
 }

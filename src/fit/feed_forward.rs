@@ -1,0 +1,26 @@
+//! Whether speed is fed forward: a prior of what most controllers do makes one of loops that feed none.
+
+use super::{
+    estimate::{Estimate, Problem, Workspace},
+    parameters::{DEAD_TIME, LIMITS, POSITION_GAIN},
+};
+
+/// Dead time, s, and position gain, 1/s, where descents start beside the estimate with a feed-forward.
+const STARTS: [[f64; 2]; 2] = [[0.1, 1.5], [0.1, 4.0]];
+
+/// The estimate without a feed-forward, if it costs less: then the data do not show one.
+pub(super) fn without(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Option<Estimate> {
+    let mut other = problem.clone();
+    other.shown.feed_forward = false;
+    let before = problem.cost_at(&found.x, found.scale_rad, workspace);
+    let place = |i: usize, value: f64| problem.priors.of(i).place(value);
+    let anew = STARTS.map(|[dead_time_s, gain_1_s]| {
+        let mut x = found.x.clone();
+        x[..LIMITS].fill(0.0);
+        x[DEAD_TIME] = place(DEAD_TIME, dead_time_s);
+        x[POSITION_GAIN] = place(POSITION_GAIN, gain_1_s);
+        x
+    });
+    let without = other.search(std::iter::once(found.x.clone()).chain(anew), workspace);
+    (other.cost_at(&without.x, found.scale_rad, workspace) < before).then_some(without)
+}
