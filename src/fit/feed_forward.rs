@@ -6,12 +6,13 @@ use super::{
 };
 
 /// Dead time, s, and position gain, 1/s, where descents start beside the estimate with a feed-forward.
-const STARTS: [[f64; 2]; 2] = [[0.1, 1.5], [0.1, 4.0]];
+const STARTS: [[f64; 2]; 3] = [[0.05, 1.2], [0.1, 2.4], [0.1, 4.0]];
 
-/// The estimate without a feed-forward, if it costs less: then the data do not show one.
+/// The estimate without a feed-forward and without late set values, if it costs less: then the data do not show them.
 pub(super) fn without(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Option<Estimate> {
     let mut other = problem.clone();
     other.shown.feed_forward = false;
+    other.shown.late = false;
     let before = problem.cost_at(&found.x, found.scale_rad, workspace);
     let place = |i: usize, value: f64| problem.priors.of(i).place(value);
     let anew = STARTS.map(|[dead_time_s, gain_1_s]| {

@@ -112,9 +112,16 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     let mut rivals = Vec::new();
     match SetValues::of(&problem, &found, &mut workspace) {
         SetValues::Late(late, shown, prompt) => {
-            problem.shown = shown;
-            found = late;
-            rivals.extend(prompt);
+            let behind = Problem { shown, ..problem.clone() };
+            // Behind a filter that makes up for it a feed-forward is none.
+            if let Some(without) = feed_forward::without(&behind, &late, &mut workspace) {
+                problem.shown.feed_forward = false;
+                found = without;
+            } else {
+                problem.shown = shown;
+                found = late;
+                rivals.extend(prompt);
+            }
         }
         SetValues::MayBeLate(models) => rivals = models,
         SetValues::Prompt => {}

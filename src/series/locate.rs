@@ -340,7 +340,7 @@ mod tests {
         assert_eq!(locate(&Series { tracks: vec![rest] }, &within(&[1.0], 20.0)), None);
         let other = Track::new("z", vec![0.0, 1.0], vec![0.0, 1.0], &[]).unwrap();
         assert_eq!(locate(&motion(), &Series { tracks: vec![other] }), None);
-        assert_eq!(locate(&motion(), &within(&[0.0], 4.0)), None);
+        assert_eq!(locate(&motion(), &within(&[0.0], 2.5)), None);
         let endless = Track::new("a", vec![0.0, 1e12], vec![0.0, 1.0], &[]).unwrap();
         assert_eq!(locate(&motion(), &Series { tracks: vec![endless] }), None);
     }
