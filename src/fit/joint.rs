@@ -6,8 +6,10 @@ use super::{
     censor::{ASKED, seen, sustained},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
-    feed_forward, integral,
+    feed_forward::FeedForward,
+    integral,
     interval::{Knowledge, discrepancy},
+    model::Model,
     outcome::JointFit,
     parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown, Valve},
     run::{Run, Sample},
@@ -105,27 +107,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         problem.shown.valve.edge = true;
         found = edged;
     }
-    if let Some(without) = feed_forward::without(&problem, &found, &mut workspace) {
-        problem.shown.feed_forward = false;
-        found = without;
-    }
-    let mut rivals = Vec::new();
-    match SetValues::of(&problem, &found, &mut workspace) {
-        SetValues::Late(late, shown, prompt) => {
-            let behind = Problem { shown, ..problem.clone() };
-            // Behind a filter that makes up for it a feed-forward is none.
-            if let Some(without) = feed_forward::without(&behind, &late, &mut workspace) {
-                problem.shown.feed_forward = false;
-                found = without;
-            } else {
-                problem.shown = shown;
-                found = late;
-                rivals.extend(prompt);
-            }
-        }
-        SetValues::MayBeLate(models) => rivals = models,
-        SetValues::Prompt => {}
-    }
+    let (mut found, rivals) = fed(&mut problem, found, &mut workspace);
     if some.len() < runs.len() {
         problem.runs = runs;
         found.x.truncate(SHARED);
@@ -158,6 +140,42 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     let runs = held_out.iter().zip(&skill.errors).zip(&skill.starts);
     let stretches = runs.map(|((run, errors), starts)| HeldOut::of(named.0, run, errors, starts)).collect();
     (joint, ratios, stretches)
+}
+
+/// Whether speed is fed forward, and whether set values come late; with models that explain the data nearly as well.
+fn fed(problem: &mut Problem, mut found: Estimate, workspace: &mut Workspace) -> (Estimate, Vec<Model>) {
+    let mut rivals = Vec::new();
+    match FeedForward::of(problem, &found, workspace) {
+        FeedForward::None(without) => {
+            problem.shown.feed_forward = false;
+            found = without;
+        }
+        FeedForward::MayBeNone(model) => rivals.push(model),
+        FeedForward::Some => {}
+    }
+    match SetValues::of(problem, &found, workspace) {
+        SetValues::Late(late, shown, prompt) => {
+            let behind = Problem { shown, ..problem.clone() };
+            // Behind a filter that makes up for it a feed-forward is none.
+            match FeedForward::of(&behind, &late, workspace) {
+                FeedForward::None(without) => {
+                    problem.shown.feed_forward = false;
+                    found = without;
+                }
+                may_be => {
+                    problem.shown = shown;
+                    found = late;
+                    rivals = prompt.into_iter().collect();
+                    if let FeedForward::MayBeNone(model) = may_be {
+                        rivals.push(model);
+                    }
+                }
+            }
+        }
+        SetValues::MayBeLate(models) => rivals.extend(models),
+        SetValues::Prompt => {}
+    }
+    (found, rivals)
 }
 
 /// Places to search from.

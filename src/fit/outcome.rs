@@ -208,6 +208,7 @@ impl JointFit {
             position_gain_1_s: self.position_gain_1_s.with_rival(other.position_gain_1_s),
             integral_gain_1_s2: self.integral_gain_1_s2.with_rival(other.integral_gain_1_s2),
             feed_forward: self.feed_forward.with_rival(other.feed_forward),
+            set_values_late_s: self.set_values_late_s.with_rival(other.set_values_late_s()),
             ..self
         }
     }

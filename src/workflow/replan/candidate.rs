@@ -168,9 +168,27 @@ impl Maker<'_> {
     }
 
     /// Whether joints were held back in the last run by what they share: of how they go where that is enough the run says nothing.
-    pub(super) fn starved(&self) -> bool {
-        let asked = self.fit.shared.as_ref().and_then(|shared| shared.asked(&self.last.plan));
+    fn starved(&self) -> bool {
+        self.asks_too_much(&self.last.plan)
+    }
+
+    fn asks_too_much(&self, plan: &Series) -> bool {
+        let asked = self.fit.shared.as_ref().and_then(|shared| shared.asked(plan));
         asked.is_some_and(|(asked, _)| asked > 1.0)
+    }
+
+    /// Where joints were held back, the plans that ask for no more than they share, if there are such: no correction makes up for that,
+    /// and what is expected of other plans is of joints that are held back.
+    pub(super) fn within_shared(&self, options: Vec<Sampled>) -> Vec<Sampled> {
+        let (within, beyond): (Vec<Sampled>, Vec<Sampled>) =
+            options.into_iter().partition(|(_, plan)| !self.asks_too_much(plan));
+        if within.is_empty() {
+            beyond
+        } else if self.starved() {
+            within
+        } else {
+            [within, beyond].concat()
+        }
     }
 
     /// What the newest run tells of another timing.

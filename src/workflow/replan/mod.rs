@@ -148,8 +148,8 @@ pub fn run(
         return Err(ReplanFailure::NoTask { path: path.clone() });
     }
     let setup = last.request.as_ref().map(|request| &request.setup);
-    let options = candidates(&last, search.as_ref())?;
     let maker = Maker { inputs, precompensates, fit: &fit, setup, last: &last };
+    let options = maker.within_shared(candidates(&last, search.as_ref())?);
     let (chosen, decision) = decided(&maker, &mut history, &options, learns)?;
     if precompensates && chosen.new.is_some() && chosen.command.is_none() {
         let message = "joints were held back by what they share, so that the run does not tell how they go in a slower plan: the plan \
@@ -222,26 +222,8 @@ fn searched(
     let best = &found.front[..found.front.len().min(CANDIDATES)];
     let known = start.as_deref().filter(|_| last.shaping() == Shaping::Timing);
     let plans = shape::shaped(&setup, best, (start.as_deref(), known), &ceilings, shaping)?;
-    let plans = within_shared(fit, &setup, plans)?;
     let retime::Timings { front, evaluations } = found;
     Ok(Search { front, plans, shaping, evaluations, ceilings, held, evaluation })
-}
-
-/// The plans that ask for no more than joints share, where there are such.
-fn within_shared(
-    fit: &Fit,
-    setup: &Setup,
-    plans: Vec<PlanEvaluation>,
-) -> Result<Vec<PlanEvaluation>, ReplanFailure> {
-    let Some(shared) = &fit.shared else { return Ok(plans) };
-    let mut within = Vec::new();
-    for plan in &plans {
-        let samples = sampled(setup, &setup.motion_through(&plan.times_s, &plan.via)?)?;
-        if shared.asked(&samples).is_none_or(|(asked, _)| asked <= 1.0) {
-            within.push(plan.clone());
-        }
-    }
-    Ok(if within.is_empty() { plans } else { within })
 }
 
 /// Plans to look at with their commands: the last one first.
