@@ -131,8 +131,7 @@ impl Cylinder {
         (length_m, sense * a * b * sin_angle / length_m + self.straight)
     }
 
-    /// Everything at once, from the sine and cosine of the joint's angle, its speed, rad/s, and its
-    /// torque, N m.
+    /// Everything at once, from the sine and cosine of the joint's angle, its speed, rad/s, and its torque, N m.
     ///
     /// A lever below a micrometre, which no posture within the joint's range has, counts as one.
     #[inline(always)]
@@ -141,14 +140,9 @@ impl Cylinder {
         let rod_speed_m_s = lever_m * speed_rad_s;
         let area_m2 = if rod_speed_m_s > 0.0 { self.push_area_m2 } else { self.pull_area_m2 };
         let force_n = torque_nm / lever_m.abs().max(1e-6).copysign(lever_m);
-        let per_most = if force_n > 0.0 { self.per_push } else { self.per_pull };
-        Actuation {
-            lever_m,
-            rod_speed_m_s,
-            flow_m3_s: area_m2 * rod_speed_m_s.abs(),
-            force_n,
-            force_share: force_n.abs() * per_most,
-        }
+        let force_share = force_n.abs() * if force_n > 0.0 { self.per_push } else { self.per_pull };
+        let flow_m3_s = area_m2 * rod_speed_m_s.abs();
+        Actuation { lever_m, rod_speed_m_s, flow_m3_s, force_n, force_share }
     }
 
     /// How it moves its joint.

@@ -4,7 +4,7 @@
 use serde::Serialize as _;
 
 use super::{
-    ArmError, Chain, Pose, Shape, Solid,
+    ArmError, Chain, Shape, Solid,
     error::Witness,
     robot::{Body, Color, Geometry, Material, Origin, Robot, Visual},
 };
@@ -86,17 +86,11 @@ fn visual(shape: &Shape) -> Visual {
         Solid::Ball(radius) => Body::Sphere { radius },
     };
     let name = shape.rgba.map(|c| format!("{c:.2}")).join(" ");
-    Visual {
-        name: None,
-        origin: origin(&shape.place),
-        geometry: Geometry { body },
-        material: Some(material(&name, shape.rgba)),
-    }
-}
-
-fn origin(place: &Pose) -> Origin {
-    let (roll, pitch, yaw) = place.rotation.euler_angles();
-    Origin { xyz: place.translation.vector.into(), rpy: [roll, pitch, yaw], quat_xyzw: None }
+    let (roll, pitch, yaw) = shape.place.rotation.euler_angles();
+    let xyz = shape.place.translation.vector.into();
+    let origin = Origin { xyz, rpy: [roll, pitch, yaw], quat_xyzw: None };
+    let material = Some(material(&name, shape.rgba));
+    Visual { name: None, origin, geometry: Geometry { body }, material }
 }
 
 fn material(name: &str, rgba: [f64; 4]) -> Material {

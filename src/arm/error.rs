@@ -27,7 +27,6 @@ pub enum ArmError {
     Unreachable { distance_m: f64, angle_rad: f64 },
 }
 
-/// Speaks for one file.
 pub(super) struct Witness<'a>(pub(super) &'a str);
 
 impl Witness<'_> {
@@ -37,12 +36,8 @@ impl Witness<'_> {
         found: impl Display,
         expected: impl Into<String>,
     ) -> ArmError {
-        ArmError::Unexpected {
-            file: self.0.to_owned(),
-            element: element.into(),
-            found: found.to_string(),
-            expected: expected.into(),
-        }
+        let (file, element, found) = (self.0.to_owned(), element.into(), found.to_string());
+        ArmError::Unexpected { file, element, found, expected: expected.into() }
     }
 
     pub(super) fn syntax(&self, reason: &dyn Display) -> ArmError {

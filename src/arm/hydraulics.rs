@@ -7,7 +7,6 @@ use serde::Deserialize;
 use super::{ArmError, Chain, Cylinder, Linkage, cylinder::Drive, error::Witness};
 use crate::series::JointKind;
 
-/// More than any file of cylinders.
 const LARGEST_TEXT: usize = 1 << 20;
 
 /// The file as it is written: SI units and radians.
@@ -105,11 +104,8 @@ impl Document {
         let Self { supply_pressure_pa: supply, return_pressure_pa: back, .. } = document;
         if !(back >= 0.0 && supply > back && supply < 1e9) {
             let found = format!("supply {supply} Pa and return {back} Pa");
-            return Err(at.unexpected(
-                "supply_pressure_pa",
-                found,
-                "a supply above the return, which is not negative",
-            ));
+            let expected = "a supply above the return, which is not negative";
+            return Err(at.unexpected("supply_pressure_pa", found, expected));
         }
         let efficiency = document.mechanical_efficiency;
         if !(efficiency > 0.0 && efficiency <= 1.0) {
@@ -163,7 +159,6 @@ pub struct Hydraulics {
 }
 
 impl Hydraulics {
-    /// No cylinder on any of so many joints.
     pub(super) fn none(joints: usize) -> Self {
         Self { cylinders: vec![None; joints], pump_flow_m3_s: f64::INFINITY }
     }

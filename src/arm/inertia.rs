@@ -21,11 +21,8 @@ impl Inertia {
     /// `None` unless everything is finite and the mass is not negative.
     pub fn new(mass_kg: f64, centre_m: Vector3<f64>, tensor_kg_m2: Matrix3<f64>) -> Option<Self> {
         let about_centre = Matrix3::identity() * (0.5 * tensor_kg_m2.trace()) - tensor_kg_m2;
-        let body = Self {
-            mass_kg,
-            first_kg_m: centre_m * mass_kg,
-            second_kg_m2: about_centre + centre_m * centre_m.transpose() * mass_kg,
-        };
+        let second_kg_m2 = about_centre + centre_m * centre_m.transpose() * mass_kg;
+        let body = Self { mass_kg, first_kg_m: centre_m * mass_kg, second_kg_m2 };
         let numbers = std::iter::once(&body.mass_kg).chain(&body.first_kg_m).chain(&body.second_kg_m2);
         (mass_kg >= 0.0 && numbers.into_iter().all(|x| x.is_finite())).then_some(body)
     }

@@ -28,10 +28,8 @@ pub struct Motion<'a, const L: usize> {
     pub acceleration_rad_s2: &'a [[f64; L]],
 }
 
-/// A vector in every lane.
 type Vectors<const L: usize> = [[f64; L]; 3];
 
-/// One body in its joint's frame.
 #[derive(Debug, Clone, Copy)]
 struct Body<const L: usize> {
     sin: [f64; L],

@@ -59,7 +59,6 @@ const WIDTH: f64 = 0.04;
 /// A pin's radius by the width of its link, and its length by the same.
 const PIN: [f64; 2] = [0.6, 1.35];
 
-/// Where something is seen, and how.
 struct Seen {
     link: usize,
     place: Pose,
@@ -164,24 +163,18 @@ impl Chain {
                 shapes.push(Shape { link: i, place: link.place.inverse(), solid, rgba: STEEL });
             }
             let rgba = if link.frame == 0 { STEEL } else { PAINT };
-            match poses.get(i + 1) {
-                Some(next) => {
-                    let way_m = pose.inv_mul(next).translation.vector;
-                    let along = Rotation3::rotation_between(&Vector3::x(), &way_m).unwrap_or_else(|| {
-                        Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI)
-                    });
-                    let place = Pose::from_parts(Translation3::from(0.5 * way_m), along);
-                    let solid = Solid::Block([way_m.norm(), width_m, width_m]);
-                    if way_m.norm() > 1e-6 {
-                        shapes.push(Shape { link: i, place, solid, rgba });
-                    }
+            if let Some(next) = poses.get(i + 1) {
+                let way_m = pose.inv_mul(next).translation.vector;
+                let along = Rotation3::rotation_between(&Vector3::x(), &way_m)
+                    .unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI));
+                let place = Pose::from_parts(Translation3::from(0.5 * way_m), along);
+                let solid = Solid::Block([way_m.norm(), width_m, width_m]);
+                if way_m.norm() > 1e-6 {
+                    shapes.push(Shape { link: i, place, solid, rgba });
                 }
-                None => shapes.push(Shape {
-                    link: i,
-                    place: Pose::identity(),
-                    solid: Solid::Ball(0.6 * width_m),
-                    rgba: STEEL,
-                }),
+            } else {
+                let (place, solid) = (Pose::identity(), Solid::Ball(0.6 * width_m));
+                shapes.push(Shape { link: i, place, solid, rgba: STEEL });
             }
         }
         shapes
@@ -199,7 +192,6 @@ fn solid(body: &Body) -> Option<Solid> {
     }
 }
 
-/// Numbers that can be drawn.
 fn sane(shape: &Shape) -> bool {
     let mut place = shape.place.translation.vector.iter().chain(shape.place.rotation.matrix());
     let sizes = match shape.solid {

@@ -35,10 +35,9 @@ impl Chain {
     ///
     /// # Errors
     ///
-    /// [`ArmError`], naming the element: text that is no URDF, links or joints that are missing,
-    /// double or in a loop, several possible tools, moving joints beside the path to the tool,
-    /// other kinds of joints, numbers that are not finite, limits upside down, in degrees or in
-    /// millimetres.
+    /// [`ArmError`], naming the element: text that is no URDF, links or joints that are missing, double or in a loop,
+    /// several possible tools, moving joints beside the path to the tool, other kinds of joints, numbers that are not
+    /// finite, limits upside down, in degrees or in millimetres.
     pub fn from_urdf(text: &str, file: &str, tool: Option<&str>) -> Result<Self, ArmError> {
         let at = Witness(file);
         let robot = Arc::new(parsed(text, &at)?);
@@ -236,11 +235,8 @@ impl<'a> Tree<'a> {
                 let element = format!("<joint {:?}>", joint.name);
                 if joint.kind != JointKind::Fixed && onwards.is_some() {
                     let found = "a moving joint beside the path to the tool";
-                    return Err(self.at.unexpected(
-                        element,
-                        found,
-                        "a serial chain; name another tool, or make this joint fixed",
-                    ));
+                    let expected = "a serial chain; name another tool, or make this joint fixed";
+                    return Err(self.at.unexpected(element, found, expected));
                 }
                 waiting.push((joint.child.link.as_str(), place * self.pose(&joint.origin, &element)?));
             }
@@ -297,28 +293,21 @@ impl<'a> Tree<'a> {
             let expected = "joints that move on their own: make one that follows another fixed, and let the other move as far as both";
             return Err(self.at.unexpected(element, found, expected));
         }
+        let wrong =
+            |found: &str, expected: &str| self.at.unexpected(format!("{element} <limit>"), found, expected);
+        let found = format!("lower {lower_rad} and upper {upper_rad}");
         if lower_rad.is_nan() || upper_rad.is_nan() || lower_rad >= upper_rad {
-            let found = format!("lower {lower_rad} and upper {upper_rad}");
-            return Err(self.at.unexpected(
-                format!("{element} <limit>"),
-                found,
-                "lower below upper, rad or m",
-            ));
+            return Err(wrong(&found, "lower below upper, rad or m"));
         }
         let [least_rad, most_rad] = IN_DEGREES_RAD;
         let widest_rad = lower_rad.abs().max(upper_rad.abs());
         if joint.kind == JointKind::Revolute && widest_rad > least_rad && widest_rad <= most_rad {
-            let found = format!(
-                "lower {lower_rad} and upper {upper_rad}, {:.0} turns",
-                widest_rad / std::f64::consts::TAU
-            );
+            let turns = widest_rad / std::f64::consts::TAU;
             let expected = "radians: degrees times 0.0174533; a joint without stops is of type continuous";
-            return Err(self.at.unexpected(format!("{element} <limit>"), found, expected));
+            return Err(wrong(&format!("{found}, {turns:.0} turns"), expected));
         }
         if joint.kind == JointKind::Prismatic && widest_rad > LONGEST_M {
-            let found = format!("lower {lower_rad} and upper {upper_rad}");
-            let expected = "metres: millimetres times 0.001";
-            return Err(self.at.unexpected(format!("{element} <limit>"), found, expected));
+            return Err(wrong(&found, "metres: millimetres times 0.001"));
         }
         // The format's default, zero, means that nothing is said.
         let said = |value: f64| if value > 0.0 { value } else { f64::INFINITY };

@@ -19,7 +19,6 @@ const MOST_NAMES: u32 = 10_000;
 
 /// No thread gets a name that another one had: who removes what is left may still know that.
 static COUNT: AtomicU64 = AtomicU64::new(0);
-/// The files that this process is writing.
 static WRITTEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 pub(super) fn written() -> MutexGuard<'static, BTreeSet<PathBuf>> {

@@ -41,20 +41,12 @@ pub(super) struct Args {
 
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
-        let inputs = Inputs {
-            logs: self.logs.clone(),
-            read: self.read.options(),
-            delay_model: DelayModel::OfThisRunIfShort,
-            ..Inputs::default()
-        };
+        let (logs, read) = (self.logs.clone(), self.read.options());
+        let inputs = Inputs { logs, read, delay_model: DelayModel::OfThisRunIfShort, ..Inputs::default() };
         let report = run(&inputs)?;
-        console.answer(
-            self.json,
-            &Document::of(&report),
-            || words::answer(&report, self.explain).reading(&self.read.words()),
-            &report.remarks,
-            &words::verdicts(&report),
-        )
+        let (document, verdicts) = (Document::of(&report), words::verdicts(&report));
+        let shown = || words::answer(&report, self.explain).reading(&self.read.words());
+        console.answer(self.json, &document, shown, &report.remarks, &verdicts)
     }
 }
 

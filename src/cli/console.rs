@@ -35,7 +35,6 @@ impl<'a> Console<'a> {
         Self { out, err, quiet }
     }
 
-    /// Writes to standard output.
     pub(super) fn print(&mut self, text: &str) -> Result<(), CliError> {
         read_or_left(self.out.write_all(text.as_bytes())).map_err(CliError::Output)
     }
@@ -62,11 +61,8 @@ impl<'a> Console<'a> {
     pub(super) fn say_remarks(&mut self, remarks: &Remarks) {
         for remark in remarks.as_slice() {
             let text = harmless(&remark.message).replace('\n', "\u{fffd}");
-            self.say(format_args!(
-                "{DOUBT}remark:{DOUBT:#} {} x{}: {text}",
-                remark.code.name(),
-                remark.count
-            ));
+            let (code, count) = (remark.code.name(), remark.count);
+            self.say(format_args!("{DOUBT}remark:{DOUBT:#} {code} x{count}: {text}"));
         }
     }
 
@@ -128,7 +124,6 @@ fn read_or_left(written: std::io::Result<()>) -> std::io::Result<()> {
     written.or_else(|error| if error.kind() == ErrorKind::BrokenPipe { Ok(()) } else { Err(error) })
 }
 
-/// Forms of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     Text,
@@ -200,7 +195,6 @@ impl<'a> Target<'a> {
         Self { form: if json { Form::Json } else { Form::Text }, file: None }
     }
 
-    /// A document as text or Markdown.
     pub(super) fn text(&self, document: &Document) -> String {
         match (self.form, self.file) {
             (Form::Markdown, _) => kit::markdown(document),
@@ -227,7 +221,6 @@ pub(super) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     write_atomically(path, |file| file.write_all(bytes).map_err(CliError::Output))
 }
 
-/// Makes a folder, and those above it.
 pub(super) fn make_folder(path: &Path) -> Result<(), CliError> {
     let failed = CliError::step(format!("cannot make the folder {}", path.display()));
     std::fs::create_dir_all(path).map_err(|error| failed(error.into()))
@@ -245,7 +238,6 @@ pub(super) fn progress(steps: Option<u64>, template: &str) -> ProgressBar {
     bar
 }
 
-/// Whether the name of a file has an ending.
 pub(super) fn ends(file: Option<&Path>, with: &str) -> bool {
     file.and_then(Path::extension).is_some_and(|ending| ending.eq_ignore_ascii_case(with))
 }

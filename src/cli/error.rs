@@ -8,7 +8,6 @@ use std::{
 
 use super::terminal::{FAILED, harmless};
 
-/// Why a command did not finish.
 #[derive(Debug)]
 pub(super) enum CliError {
     /// Arguments that contradict what is there: exit code 2.
@@ -19,7 +18,6 @@ pub(super) enum CliError {
     Failed(Box<dyn Error + Send + Sync>),
 }
 
-/// A step of the program that failed for a reason from below.
 #[derive(Debug, thiserror::Error)]
 #[error("{step}")]
 struct Step {

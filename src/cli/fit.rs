@@ -50,7 +50,6 @@ impl Args {
         self.output.as_deref().filter(|path| ends(Some(path), "json"))
     }
 
-    /// Fits the runs and writes the limits.
     pub(super) fn fitted(&self) -> Result<Fitted, CliError> {
         spare_for_file(self.output.as_deref(), &self.logs)?;
         named_as(self.output.as_deref(), "limits in TOML", &["toml", "json", "txt"])?;

@@ -31,18 +31,16 @@ impl clap::Args for GateArgs {
     fn augment_args(command: Command) -> Command {
         let option = |(option, limit, kind): (&'static str, &'static Limit, JointKind)| {
             let option = Arg::new(option).long(option).help_heading(HEADING).allow_negative_numbers(true);
+            let help = limit.help.to_owned();
             match (limit.dimension, kind) {
                 (Dimension::Position, JointKind::Turns) => {
-                    option.help(limit.help).value_name("DEG").value_parser(degrees)
+                    option.help(help).value_name("DEG").value_parser(degrees)
                 }
-                (Dimension::Distance, _) => {
-                    option.help(limit.help).value_name("MM").value_parser(millimetres)
+                (Dimension::Position, JointKind::Slides) => {
+                    option.help(help + ", of joints that slide").value_name("MM").value_parser(millimetres)
                 }
-                (Dimension::Position, JointKind::Slides) => option
-                    .help(format!("{}, of joints that slide", limit.help))
-                    .value_name("MM")
-                    .value_parser(millimetres),
-                _ => option.help(limit.help).value_name("MS").value_parser(milliseconds),
+                (Dimension::Distance, _) => option.help(help).value_name("MM").value_parser(millimetres),
+                _ => option.help(help).value_name("MS").value_parser(milliseconds),
             }
         };
         let allow_empty = Arg::new(ALLOW_EMPTY)

@@ -85,13 +85,8 @@ impl Run for Args {
         }
         spare_for_file(self.save_map.as_deref(), from_ref(&self.file))?;
         let imported = run(&self.request()?)?;
-        console.answer(
-            self.json,
-            &imported,
-            || words::document(&self.output.to_string_lossy(), &imported),
-            &imported.remarks,
-            &[],
-        )
+        let shown = || words::document(&self.output.to_string_lossy(), &imported);
+        console.answer(self.json, &imported, shown, &imported.remarks, &[])
     }
 }
 

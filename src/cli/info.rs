@@ -30,12 +30,7 @@ pub(super) struct Args {
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let survey = run(&Inputs { logs: self.logs.clone(), read: self.read.options(), check: self.check })?;
-        console.answer(
-            self.json,
-            &InfoDocument::of(&survey),
-            || words::document(&survey),
-            &survey.remarks,
-            &[],
-        )
+        let document = InfoDocument::of(&survey);
+        console.answer(self.json, &document, || words::document(&survey), &survey.remarks, &[])
     }
 }

@@ -19,7 +19,6 @@ use crate::{
 
 /// Lines wait for the disk up to this many.
 const WAITING: usize = 1 << 16;
-/// The longest packet.
 const PACKET: usize = 1 << 16;
 /// The longest line, bytes.
 const LONGEST: u64 = 1 << 20;

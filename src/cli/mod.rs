@@ -48,15 +48,11 @@ use error::CliError;
 /// How a run that did not fail ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
-    /// Without remarks.
     Clean,
-    /// With remarks on the data.
     Remarks,
-    /// With a limit that is not kept.
     LimitBroken,
 }
 
-/// Runs a verb as its arguments ask.
 trait Run {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError>;
 }

@@ -120,23 +120,7 @@ impl ReadArgs {
             ..ReadOptions::default()
         }
     }
-}
 
-/// `NAME`, of a joint in m, or `NAME=UNIT`.
-fn slides(text: &str) -> Result<(String, LengthUnit), String> {
-    let found = LengthUnit::of_joint(text);
-    found.ok_or_else(|| {
-        format!("{text:?} is neither NAME nor NAME=UNIT with m, cm or mm, such as telescope=mm")
-    })
-}
-
-/// As [`slides`] reads it.
-fn length((joint, unit): &(String, LengthUnit)) -> String {
-    let unit = Some(unit.name()).filter(|_| *unit != LengthUnit::Metres);
-    unit.map_or_else(|| joint.clone(), |unit| format!("{joint}={unit}"))
-}
-
-impl ReadArgs {
     /// The options as they are typed, words of a shell: what a command that reads the same logs needs.
     pub(super) fn words(&self) -> Vec<String> {
         self.words_of(true)
@@ -173,6 +157,20 @@ impl ReadArgs {
         let valued = valued.into_iter().filter_map(|(option, value)| Some(typed(option, &value?)));
         topics.map(|(option, one)| typed(option, &one.to_string())).chain(valued).chain(flags).collect()
     }
+}
+
+/// `NAME`, of a joint in m, or `NAME=UNIT`.
+fn slides(text: &str) -> Result<(String, LengthUnit), String> {
+    let found = LengthUnit::of_joint(text);
+    found.ok_or_else(|| {
+        format!("{text:?} is neither NAME nor NAME=UNIT with m, cm or mm, such as telescope=mm")
+    })
+}
+
+/// As [`slides`] reads it.
+fn length((joint, unit): &(String, LengthUnit)) -> String {
+    let unit = Some(unit.name()).filter(|_| *unit != LengthUnit::Metres);
+    unit.map_or_else(|| joint.clone(), |unit| format!("{joint}={unit}"))
 }
 
 /// An option with its value, as words of a shell; a value that begins with a dash would be an option of its own.

@@ -98,6 +98,25 @@ impl Args {
         let stem = self.output.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         self.output.with_file_name(format!("{stem}-with-plan.mcap"))
     }
+
+    fn join(&self, plan: &Path, logs: &[PathBuf]) -> Result<PathBuf, CliError> {
+        let output = self.joined();
+        let inputs = join::Inputs {
+            logs: logs.to_vec(),
+            plan: plan.to_owned(),
+            read: ReadOptions::default(),
+            at_s: None,
+            output: output.clone(),
+        };
+        let words: Vec<String> = logs.iter().map(argument).collect();
+        let line = ["join", &words.join(" "), "--plan", &argument(plan), "-o", &argument(&output)];
+        let step = format!(
+            "the recording is whole, but without its plan; `{}` joins them, with the option that is named below",
+            command(&line)
+        );
+        join::run(&inputs).map_err(|error| CliError::step(step)(error.into()))?;
+        Ok(output)
+    }
 }
 
 impl Run for Args {
@@ -149,26 +168,5 @@ impl Run for Args {
         let report = Report::try_parse_from(words).map_err(|error| CliError::Usage(error.to_string()))?;
         console.print("\n")?;
         report.args.run(console)
-    }
-}
-
-impl Args {
-    fn join(&self, plan: &Path, logs: &[PathBuf]) -> Result<PathBuf, CliError> {
-        let output = self.joined();
-        let inputs = join::Inputs {
-            logs: logs.to_vec(),
-            plan: plan.to_owned(),
-            read: ReadOptions::default(),
-            at_s: None,
-            output: output.clone(),
-        };
-        let words: Vec<String> = logs.iter().map(argument).collect();
-        let line = ["join", &words.join(" "), "--plan", &argument(plan), "-o", &argument(&output)];
-        let step = format!(
-            "the recording is whole, but without its plan; `{}` joins them, with the option that is named below",
-            command(&line)
-        );
-        join::run(&inputs).map_err(|error| CliError::step(step)(error.into()))?;
-        Ok(output)
     }
 }

@@ -27,12 +27,8 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         spare_for_log(Some(&self.output), from_ref(&self.log))?;
         let document = RecoverDocument::of(recover(&self.log, &self.output)?);
-        console.answer(
-            self.json,
-            &document,
-            || words::document(&self.output.to_string_lossy(), &document.recovered),
-            &document.recovered.remarks,
-            &[],
-        )
+        let recovered = &document.recovered;
+        let shown = || words::document(&self.output.to_string_lossy(), recovered);
+        console.answer(self.json, &document, shown, &recovered.remarks, &[])
     }
 }

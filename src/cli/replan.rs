@@ -165,7 +165,6 @@ impl Args {
         }
     }
 
-    /// Plans again with a progress bar, and writes plan and command.
     pub(super) fn replanned(&self) -> Result<Replanned, CliError> {
         let request = self.request();
         let read: Vec<PathBuf> = self.logs.iter().chain(&self.limits).chain(&self.task).cloned().collect();
@@ -197,26 +196,22 @@ impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let replanned = self.replanned()?;
         let target = Target::stdout(self.json);
+        let (reading, changing) =
+            (self.sent.words_of_next(), self.change.words_of_next(self.limits.as_deref()));
         if let Some(file) = &self.html {
             let again = again(std::env::args_os().skip(1));
             // Half of what is not to be sent is not to be sent.
             let whole = replanned.command.as_ref().is_some_and(Commanded::applied)
                 && !replanned.past.careful()
                 && Checks::of(&replanned).verdict != Verdict::DoNotSend;
-            let sending = next::to_send(
-                self.output.as_deref(),
-                &self.logs,
-                (&again, &self.sent.words_of_next(), &self.change.words_of_next(self.limits.as_deref())),
-                whole,
-            );
+            let words = (again.as_slice(), reading.as_slice(), changing.as_slice());
+            let sending = next::to_send(self.output.as_deref(), &self.logs, words, whole);
             write_file(file, words::page(&replanned, &sending).as_bytes())?;
         }
         let result = match &self.output {
             _ if self.json => ReplanDocument::of(&replanned).json(),
             Some(path) => {
-                let words =
-                    (&*self.sent.words_of_next(), &*self.change.words_of_next(self.limits.as_deref()));
-                let next = next::next_written(path, &self.logs, words);
+                let next = next::next_written(path, &self.logs, (&reading, &changing));
                 target.text(&words::document(&replanned).with_above_remarks(next))
             }
             None => target.text(&words::document(&replanned)),

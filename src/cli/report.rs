@@ -128,11 +128,8 @@ impl Run for Args {
         let forms = [(json, Form::Json), (csv, Form::Csv), (markdown, Form::Markdown), (html, Form::Html)];
         let target = Target::new(Form::of(&forms, file), file)?;
         self.figures.check()?;
-        let limits = self
-            .limits
-            .as_deref()
-            .map(|path| Ok::<_, CliError>((path, LimitsFile::read(path)?)))
-            .transpose()?;
+        let limits = self.limits.as_deref().map(|path| Ok::<_, CliError>((path, LimitsFile::read(path)?)));
+        let limits = limits.transpose()?;
         let limits = limits.as_ref().map(|(path, file)| (*path, file));
         let report = run(&self.request(limits.map(|(_, file)| file), target.form == Form::Html))?;
         if let Some((path, file)) = limits {

@@ -42,7 +42,6 @@ pub(super) struct Args {
 }
 
 impl Args {
-    /// Runs the plan and writes the log of the run.
     pub(super) fn simulated(&self) -> Result<Simulated, CliError> {
         spare_for_log(Some(&self.output), from_ref(&self.log))?;
         let run = simulate(&self.log, parameters(&self.plant).map_err(SimulateFailure::from)?, self.seed)?;

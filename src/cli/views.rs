@@ -33,7 +33,6 @@ impl ViewArgs {
         self.foxglove_layout.is_some() || self.rerun_blueprint.is_some()
     }
 
-    /// Writes what was asked for.
     pub(super) fn write(&self, inputs: &Inputs, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         spare_inputs(self.foxglove_layout.as_deref(), &inputs.logs)?;
         spare_for_file(self.rerun_blueprint.as_deref(), &inputs.logs)?;

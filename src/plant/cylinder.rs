@@ -5,10 +5,8 @@ use super::{Chambers, Friction, Supply, Valve};
 /// Pressure drop below which flow through an edge turns from turbulent to laminar, Pa.
 const LAMINAR_PA: f64 = 5e4;
 
-/// Stiffness of an end stop, N/m.
 const STOP_N_M: f64 = 2e7;
 
-/// Damping of an end stop, N s/m.
 const STOP_N_S_M: f64 = 2e5;
 
 /// Sizes of all cylinders of a joint together.
@@ -26,8 +24,7 @@ pub(super) struct Pressures {
     pub(super) rod_pa: f64,
 }
 
-/// Flow through an edge by flow gain and opening: the signed root of the pressure drop, and a
-/// bound of its slope.
+/// Flow through an edge by flow gain and opening: the signed root of the pressure drop, and a bound of its slope.
 fn root(drop_pa: f64) -> (f64, f64) {
     let slope = 1.0 / (drop_pa * drop_pa + LAMINAR_PA * LAMINAR_PA).sqrt().sqrt();
     (drop_pa * slope, slope)
@@ -108,8 +105,7 @@ pub(super) fn stop_n(size: &Size, out_m: f64, speed_m_s: f64) -> f64 {
 /// Speed at which the rod moves at a constant opening against a force that it must give, N,
 /// positive where it pushes; signed as the opening, zero if it cannot move that way, m/s.
 ///
-/// Both edges throttle alike, so that force balance is a quadratic in speed; the pump's flow
-/// bounds it.
+/// Both edges throttle alike, so that force balance is a quadratic in speed; the pump's flow bounds it.
 pub(super) fn steady_speed_m_s(
     (size, valve, friction): (&Size, &Valve, &Friction),
     supply: &Supply,

@@ -2,7 +2,6 @@
 
 use super::{Encoder, STEP_S};
 
-/// The sensor's side of a joint.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sensor {
     /// Angle behind the backlash, rad.

@@ -11,10 +11,8 @@ use super::{
 };
 use crate::input_file;
 
-/// More than any file of a plant.
 const LARGEST_TEXT: usize = 1 << 20;
 
-/// Tables of quantities.
 type Table = BTreeMap<String, Spanned<Values>>;
 
 #[derive(Deserialize)]
@@ -51,10 +49,9 @@ enum Values {
 }
 
 impl Parameters {
-    /// Reads the text of a plant file: every quantity of `sample-logs/plant/default.toml`, as one
-    /// number or, where joints may differ, as a table by joint. Angles are in degrees. What only some
-    /// machines have may be left out. A file with `base`, the name of a preset, holds only what differs
-    /// from it.
+    /// Reads the text of a plant file: every quantity of `sample-logs/plant/default.toml`, as one number or, where
+    /// joints may differ, as a table by joint. Angles are in degrees. What only some machines have may be left out. A
+    /// file with `base`, the name of a preset, holds only what differs from it.
     ///
     /// # Errors
     ///
@@ -165,11 +162,9 @@ impl Reader<'_> {
         if let Some((key, values)) = stray {
             let alike = |quantity: &Quantity| strsim::jaro(quantity.key.1, key);
             let nearest = known().max_by(|a, b| alike(a).total_cmp(&alike(b))).filter(|q| alike(q) > 0.7);
-            return Err(PlantError::UnknownKey {
-                line: line_of(self.text, &values.span()),
-                key: format!("{name}.{key}"),
-                nearest: nearest.map(|quantity| quantity.key.1.to_owned()),
-            });
+            let (line, key) = (line_of(self.text, &values.span()), format!("{name}.{key}"));
+            let nearest = nearest.map(|quantity| quantity.key.1.to_owned());
+            return Err(PlantError::UnknownKey { line, key, nearest });
         }
         known().try_for_each(|quantity| self.quantity(quantity, table.get(quantity.key.1), into))
     }

@@ -11,8 +11,7 @@ use super::{
 /// Where the rod's side of a resting cylinder lies between return and supply pressure.
 const REST_SHARE: f64 = 0.35;
 
-/// State of one joint.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct State {
     /// Signal that reaches the valve, within ±1, positive for growing angles.
     pub(super) signal: f64,
@@ -23,7 +22,6 @@ pub(super) struct State {
     pub(super) speed_rad_s: f64,
 }
 
-/// A machine in motion.
 pub(super) struct Machine<'a> {
     plant: &'a Plant,
     pub(super) states: Vec<State>,
@@ -71,14 +69,8 @@ impl<'a> Machine<'a> {
                 let joint = joint.name.clone();
                 return Err(PlantError::TooStiff { joint, rate_1_s, most_1_s: FASTEST_1_S });
             }
-            states.push(State {
-                signal: 0.0,
-                spool: Spool::default(),
-                pressures: Pressures { cap_pa, rod_pa },
-                bristles: Bristles::default(),
-                position_rad: q,
-                speed_rad_s: 0.0,
-            });
+            let pressures = Pressures { cap_pa, rod_pa };
+            states.push(State { pressures, position_rad: q, ..State::default() });
         }
         let torque_nm = vec![0.0; states.len()];
         Ok(Self { plant, states, supply_pa: high_pa, mechanics, torque_nm, steps: 0 })

@@ -1,15 +1,14 @@
 //! The arm as a body: its inertia, its weight, the levers of its cylinders.
 
 use super::{Plant, STEP_S};
-use crate::arm::{Inertia, LANES, Load, Motion, Workspace};
+use crate::arm::{Inertia, LANES, Motion, Workspace};
 
 /// Steps between two looks at the arm's pose.
 pub(super) const STEPS_A_POSE: usize = 10;
 
 /// Inertia, weight and levers at one pose, joint by joint; nothing in it grows.
 ///
-/// They change with the pose only, and within the millisecond between two looks by less than a
-/// thousandth.
+/// They change with the pose only, and within the millisecond between two looks by less than a thousandth.
 #[derive(Debug, Clone)]
 pub(super) struct Mechanics {
     work: Workspace<LANES>,
@@ -23,7 +22,6 @@ pub(super) struct Mechanics {
     pub(super) mobility: Vec<f64>,
     /// Change of the cylinders' length by joint angle, m/rad.
     pub(super) lever_m: Vec<f64>,
-    /// How far the rods are out, m.
     pub(super) out_m: Vec<f64>,
 }
 
@@ -51,7 +49,8 @@ impl Mechanics {
         for ((q, qd), (angle_rad, speed_rad_s)) in rates.zip(state) {
             (*q, *qd) = ([angle_rad; LANES], [speed_rad_s; LANES]);
         }
-        let load = load(plant, payload_kg);
+        let payload = Inertia::point(payload_kg, nalgebra::Vector3::zeros());
+        let load = plant.chain.load(payload.as_ref());
         // Column 0 asks for no acceleration, column j for one of joint j.
         for pass in 0..=n / LANES {
             for (joint, lanes) in self.acceleration_rad_s2.iter_mut().enumerate() {
@@ -59,11 +58,8 @@ impl Mechanics {
                     *value = f64::from(u8::from(pass * LANES + lane == joint + 1));
                 }
             }
-            let motion = Motion {
-                position_rad: &self.position_rad,
-                speed_rad_s: &self.speed_rad_s,
-                acceleration_rad_s2: &self.acceleration_rad_s2,
-            };
+            let (position_rad, speed_rad_s) = (&*self.position_rad, &*self.speed_rad_s);
+            let motion = Motion { position_rad, speed_rad_s, acceleration_rad_s2: &self.acceleration_rad_s2 };
             plant.chain.inverse_dynamics(&load, motion, &mut self.work, &mut self.torque_nm);
             for (row, (torque, bias)) in self.torque_nm.iter().zip(&mut self.bias_nm).enumerate() {
                 for (lane, torque) in torque.iter().enumerate() {
@@ -85,11 +81,6 @@ impl Mechanics {
     }
 }
 
-/// Load at the last joint with a payload at the tool, kg.
-fn load(plant: &Plant, payload_kg: f64) -> Load {
-    plant.chain.load(Inertia::point(payload_kg, nalgebra::Vector3::zeros()).as_ref())
-}
-
 /// Inverts a symmetric positive definite matrix in its place, by sweeping out its rows.
 fn invert(matrix: &mut [f64], n: usize) {
     for k in 0..n {
@@ -107,19 +98,3 @@ fn invert(matrix: &mut [f64], n: usize) {
 
 /// Rate of the stiffest swing that the step resolves, 1/s.
 pub(super) const FASTEST_1_S: f64 = 0.7 / STEP_S;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_matrix_times_its_inverse_is_one() {
-        let matrix = [4.0, 1.0, -0.5, 1.0, 3.0, 0.2, -0.5, 0.2, 2.0];
-        let mut inverse = matrix;
-        invert(&mut inverse, 3);
-        for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
-            let product: f64 = (0..3).map(|k| matrix[3 * i + k] * inverse[3 * k + j]).sum();
-            assert!((product - f64::from(u8::from(i == j))).abs() < 1e-14);
-        }
-    }
-}

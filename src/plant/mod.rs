@@ -1,18 +1,16 @@
 //! A hydraulic arm that does not exist: valves, cylinders, oil, friction, loop and sensors of every
 //! joint, the pump they share, and the body they move.
 //!
-//! [`simulate`] sends a command to a [`Plant`] and returns what a log of the machine would hold,
-//! with what no log holds: the angle without noise. [`Plant::truth`] says what a fit to that log
-//! should find. Three presets differ in what limits them, eleven have structures that these lack
-//! (loops, valves, links, days); all their numbers are in `sample-logs/plant`. They are engineering
-//! guesses: no log of the arm of the paper was at hand.
+//! [`simulate`] sends a command to a [`Plant`] and returns what a log of the machine would hold, with what no log
+//! holds: the angle without noise. [`Plant::truth`] says what a fit to that log should find. Three presets differ in
+//! what limits them, eleven have structures that these lack (loops, valves, links, days); all their numbers are in
+//! `sample-logs/plant`. They are engineering guesses: no log of the arm of the paper was at hand.
 //!
-//! By joint: the position loop's signal waits a dead time, moves a spool through play, lag and slew
-//! rate; past its overlap the spool opens two edges; oil flows by the root of the pressure drop,
-//! fills the cylinder's sides and is compressed; their force, less friction, turns the joint. All
-//! joints draw on one pump, whose pressure droops, and all move one body with its full inertia
-//! matrix, weight, centrifugal and Coriolis torques. What the loop and the log see of the angle
-//! lies behind backlash, noise and quantisation.
+//! By joint: the position loop's signal waits a dead time, moves a spool through play, lag and slew rate; past its
+//! overlap the spool opens two edges; oil flows by the root of the pressure drop, fills the cylinder's sides and is
+//! compressed; their force, less friction, turns the joint. All joints draw on one pump, whose pressure droops, and all
+//! move one body with its full inertia matrix, weight, centrifugal and Coriolis torques. What the loop and the log see
+//! of the angle lies behind backlash, noise and quantisation.
 //!
 //! Links bend joint by joint, without pushing back on the arm. Hoses are volumes of oil.
 //!
@@ -21,9 +19,8 @@
 //! (the backlash lies before the sensor only), swinging payloads, anti-windup of the loop. The
 //! payload is a point at the tool.
 //!
-//! The state goes on by [`STEP_S`]: speeds first, then angles and pressures with the new speeds;
-//! pressures and bristles linearly implicit. Inertia, weight and levers are looked up every
-//! millisecond.
+//! The state goes on by [`STEP_S`]: speeds first, then angles and pressures with the new speeds; pressures and bristles
+//! linearly implicit. Inertia, weight and levers are looked up every millisecond.
 
 mod controller;
 mod cylinder;
@@ -64,8 +61,7 @@ use cylinder::Size;
 /// Step of the simulation, s.
 pub const STEP_S: f64 = 1e-4;
 
-/// An arm with everything that drives it, checked: all joints have cylinders and parameters in
-/// range.
+/// An arm with everything that drives it, checked: all joints have cylinders and parameters in range.
 #[derive(Debug, Clone)]
 pub struct Plant {
     chain: Chain,
@@ -112,18 +108,12 @@ impl Plant {
                 cylinder.length_and_lever(sin, cos).0
             });
             let shortest_m = ends_m[0].min(ends_m[1]);
-            let size = Size {
-                cap_area_m2: cylinder.push_area_m2(),
-                rod_area_m2: cylinder.pull_area_m2(),
-                stroke_m: ends_m[0].max(ends_m[1]) - shortest_m,
-            };
+            let (cap_area_m2, rod_area_m2) = (cylinder.push_area_m2(), cylinder.pull_area_m2());
+            let size = Size { cap_area_m2, rod_area_m2, stroke_m: ends_m[0].max(ends_m[1]) - shortest_m };
             Ok(Axis { cylinder, size, shortest_m, sense: linkage.sense })
         };
-        let axes = joints
-            .iter()
-            .zip(arm.hydraulics.cylinders())
-            .map(axis)
-            .collect::<Result<Vec<_>, PlantError>>()?;
+        let axes = joints.iter().zip(arm.hydraulics.cylinders()).map(axis);
+        let axes = axes.collect::<Result<Vec<_>, PlantError>>()?;
         Ok(Self { chain: arm.chain.clone(), parameters, axes })
     }
 

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Numbers of a whole machine. [`Plant::new`](super::Plant::new) checks them; the default, all zero, is
-/// none.
+/// Numbers of a whole machine. [`Plant::new`](super::Plant::new) checks them; the default, all zero, is none.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Parameters {
     /// What people call it.
@@ -100,8 +99,7 @@ pub struct Valve {
     pub spool_slew_1_s: f64,
     /// Flow through one edge by opening and square root of pressure drop, m³/(s √Pa).
     pub flow_gain_m3_s_sqrt_pa: f64,
-    /// Edges are metering notches: flow grows with the opening to the power of 1 + this, the same at
-    /// full opening.
+    /// Edges are metering notches: flow grows with the opening to the power of 1 + this, the same at full opening.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub progression: f64,
     /// Oil leaves a side through a counterbalance valve that begins to open once the pressure of this

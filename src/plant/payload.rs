@@ -31,7 +31,6 @@ impl<'a> Payload<'a> {
         Ok(Self { changes, ramp_s })
     }
 
-    /// Mass at the tool, kg.
     pub(super) fn mass_kg(&self, t_s: f64) -> f64 {
         let mut mass_kg = 0.0;
         for change in self.changes.iter().take_while(|change| change.at_s <= t_s) {

@@ -31,11 +31,9 @@ impl Parameters {
     pub fn preset(name: &str) -> Result<Self, PlantError> {
         let Some((_, text)) = PRESETS.iter().find(|(known, _)| *known == name) else {
             let known: Vec<&str> = Self::preset_names().collect();
-            return Err(PlantError::UnknownPreset {
-                name: name.to_owned(),
-                nearest: nearest(name, known.iter().copied()),
-                known: known.join(", "),
-            });
+            let nearest = nearest(name, known.iter().copied());
+            let (name, known) = (name.to_owned(), known.join(", "));
+            return Err(PlantError::UnknownPreset { name, nearest, known });
         };
         Self::parse(text)
     }

@@ -3,7 +3,6 @@
 use super::{JointParameters, PlantError, STEP_S, parameters::Parameters};
 use crate::units::DEGREE_RAD;
 
-/// Where a number is.
 #[derive(Clone, Copy)]
 pub(super) enum Place {
     /// Once a machine.
@@ -12,7 +11,6 @@ pub(super) enum Place {
     Joint(fn(&mut JointParameters) -> &mut f64),
 }
 
-/// One number of a machine.
 #[derive(Clone, Copy)]
 pub(super) struct Quantity {
     /// Table and key of the file.
@@ -135,14 +133,9 @@ pub(super) struct Flaw {
 
 impl Flaw {
     pub(super) fn at(self, line: Option<usize>) -> PlantError {
-        let (table, key) = self.key;
-        let of = self.joint.map(|joint| format!(" of {joint}")).unwrap_or_default();
-        PlantError::Value {
-            line,
-            key: format!("{table}.{key}{of}"),
-            found: self.found,
-            expected: self.expected,
-        }
+        let Self { key: (table, key), joint, found, expected } = self;
+        let of = joint.map(|joint| format!(" of {joint}")).unwrap_or_default();
+        PlantError::Value { line, key: format!("{table}.{key}{of}"), found, expected }
     }
 }
 

@@ -9,9 +9,8 @@ use super::{
 use crate::rng::{Stream, stream};
 
 impl Parameters {
-    /// A machine around this one: every number of the hydraulics, of the mechanics and of the
-    /// loop's gains is multiplied with a number of its own, within 20 to 50 % of 1. Equal seeds
-    /// give equal machines.
+    /// A machine around this one: every number of the hydraulics, of the mechanics and of the loop's gains is
+    /// multiplied with a number of its own, within 20 to 50 % of 1. Equal seeds give equal machines.
     pub fn random(&self, seed: u64) -> Self {
         let mut rng = stream(seed, Stream::Machine);
         let mut other = self.clone();

@@ -14,13 +14,11 @@ use crate::{
     series::{Series, Track},
 };
 
-/// Longest run, s.
 const LONGEST_S: f64 = 3600.0;
 
 /// A sample is taken at most this part of a period early or late.
 const LATEST: f64 = 0.4;
 
-/// One joint's loop.
 struct Loop {
     /// Angle and speed that the loop is to follow, by period.
     command: Vec<(f64, f64)>,

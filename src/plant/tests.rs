@@ -93,28 +93,6 @@ fn leakage_lowers_a_loaded_arm_no_faster_than_the_oil_that_passes() {
 }
 
 #[test]
-fn a_signal_within_the_overlap_moves_nothing() {
-    let plant = sample(without_leaks);
-    let mut machine = Machine::at_rest(&plant, &POSE_RAD, 0.0).unwrap();
-    for (state, (axis, joint)) in
-        machine.states.iter_mut().zip(plant.axes.iter().zip(&plant.parameters.joints))
-    {
-        state.signal = axis.sense * (joint.valve.overlap_extend + 0.9 * joint.valve.hysteresis);
-    }
-    run(&mut machine, 3.0);
-    for (state, start_rad) in machine.states.iter().zip(POSE_RAD) {
-        assert!((state.position_rad - start_rad).abs() < 1e-9);
-    }
-    for (state, axis) in machine.states.iter_mut().zip(&plant.axes) {
-        state.signal = axis.sense * 0.15;
-    }
-    run(&mut machine, 3.0);
-    for (state, (axis, start_rad)) in machine.states.iter().zip(plant.axes.iter().zip(POSE_RAD)) {
-        assert!(axis.sense * (state.position_rad - start_rad) > 0.02);
-    }
-}
-
-#[test]
 fn a_push_dies_out_once_all_valves_are_closed() {
     let plant = sample(without_leaks);
     let mut machine = Machine::at_rest(&plant, &POSE_RAD, 0.0).unwrap();

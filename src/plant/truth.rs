@@ -26,8 +26,7 @@ pub struct JointTruth {
     pub dead_time_s: f64,
     /// Dead time, the spool's time constant and half a period of the loop, s.
     pub lag_s: f64,
-    /// Speed that the loop must want before oil flows: past overlap, hysteresis and compensation,
-    /// rad/s.
+    /// Speed that the loop must want before oil flows: past overlap, hysteresis and compensation, rad/s.
     pub dead_band_rad_s: [f64; 2],
     /// Speed at full signal, the other joints at rest, rad/s.
     pub speed_limit_rad_s: [f64; 2],

@@ -8,8 +8,7 @@ use super::Parameters;
 use crate::rng::{Stream, stream};
 
 impl Parameters {
-    /// The machine as it is in one run: null, friction and dead time of each valve drawn anew within
-    /// their drifts.
+    /// The machine as it is in one run: null, friction and dead time of each valve drawn anew within their drifts.
     pub(super) fn of_run(&self, seed: u64) -> Cow<'_, Self> {
         let drifts = |joint: &super::JointParameters| {
             joint.valve.null_drift + joint.valve.dead_time_drift_s + joint.friction.drift > 0.0

@@ -16,27 +16,21 @@ use crate::{
     },
 };
 
-/// What happened.
 #[derive(Debug)]
 pub(crate) struct Story<'a> {
     /// Where the files are.
     pub(crate) dir: &'a Path,
     /// The words of both simulations.
     pub(crate) machine: [String; 2],
-    /// The first plan.
     pub(crate) planned: &'a Planned,
-    /// The machine.
     pub(crate) fitted: &'a Fitted,
-    /// The second plan.
     pub(crate) replanned: &'a Replanned,
-    /// Both runs.
     pub(crate) comparison: &'a Comparison,
 }
 
 /// Columns of a bar for the largest value.
 const WIDTH: f64 = 40.0;
 
-/// The loop, for people.
 pub(crate) fn document(story: &Story<'_>) -> Document {
     let Story { planned, fitted, replanned, comparison, .. } = story;
     let before = &replanned.before;
@@ -88,9 +82,8 @@ pub(crate) fn document(story: &Story<'_>) -> Document {
         (story.machine[1].clone(), "the same machine, other noise".to_owned()),
         ("compare run-1.mcap run-2.mcap".to_owned(), compared(comparison)),
     ];
-    let lines = steps
-        .into_iter()
-        .flat_map(|(command, found)| [format!("$ hydrotrace {command}"), format!("    {found}")]);
+    let told = |(command, found)| [format!("$ hydrotrace {command}"), format!("    {found}")];
+    let lines = steps.into_iter().flat_map(told);
     let tool = at_the_tool(comparison).map(|changes| format!("at the tool {changes}"));
     let said = tool.into_iter().chain(luck(comparison));
     let page = [
@@ -99,26 +92,18 @@ pub(crate) fn document(story: &Story<'_>) -> Document {
     ];
     let lines = lines.chain(said.map(|said| format!("    {said}"))).chain(page.map(str::to_owned));
     let lines = lines.map(Sentence::Finding);
+    let dir = story.dir.display();
     let last = format!(
-        "Plan {:.2} s before, {:.2} s after. Run any of these commands in {} to see its full output.",
-        before.duration_s,
-        replanned.duration_s,
-        story.dir.display()
+        "Plan {:.2} s before, {:.2} s after. Run any of these commands in {dir} to see its full output.",
+        before.duration_s, replanned.duration_s
     );
-    Document::titled(format!(
-        "From a task to a better run, on a simulated hydraulic arm; the files are in {}",
-        story.dir.display()
-    ))
-    .with(Section::new(Id::OTHER, "Steps", lines))
-    .with(
-        Section::new(
-            Id::SUMMARY,
-            "Mean peak error at starts and reversals, first and second run",
-            [Table::new(&["joint", "run", ""], &["deg"], bars(comparison))],
-        )
-        .with(Sentence::finding(last)),
-    )
-    .remarked(&replanned.remarks)
+    let title = "From a task to a better run, on a simulated hydraulic arm; the files are in";
+    let heading = "Mean peak error at starts and reversals, first and second run";
+    let table = Table::new(&["joint", "run", ""], &["deg"], bars(comparison));
+    Document::titled(format!("{title} {dir}"))
+        .with(Section::new(Id::OTHER, "Steps", lines))
+        .with(Section::new(Id::SUMMARY, heading, [table]).with(Sentence::finding(last)))
+        .remarked(&replanned.remarks)
 }
 
 fn peaks<'a>(comparison: &'a Comparison, scope: &Scope) -> Option<&'a Summary> {
@@ -145,12 +130,9 @@ fn compared(comparison: &Comparison) -> String {
 fn luck(comparison: &Comparison) -> Option<String> {
     let all = peaks(comparison, &Scope::All)?;
     let events = counted(all.events, "event");
-    Some(match all.verdict {
-        Verdict::TooFew => {
-            format!("{events} of starts are too few for p below {}", probability(all.least_p()))
-        }
-        _ => format!("{events} of starts, p = {}", probability(all.p_value)),
-    })
+    let (too_few, p) = (all.verdict == Verdict::TooFew, probability(all.p_value));
+    let few = || format!("{events} of starts are too few for p below {}", probability(all.least_p()));
+    Some(if too_few { few() } else { format!("{events} of starts, p = {p}") })
 }
 
 /// A bar for each joint before and after.

@@ -22,7 +22,6 @@ const FAST: [(JointKind, f64, &str); 2] =
 /// Room that a joint needs beyond what is sent.
 const BEYOND: [(JointKind, f64); 2] = [(Turns, 5.0 * DEGREE_RAD), (Slides, 0.05)];
 
-/// An identification run, for people.
 pub(crate) fn document(excited: &Excited, of_sample: bool, file: &Path) -> Document {
     let has = |kind: JointKind| excited.joints.iter().any(|joint| joint.kind == kind);
     let number = |kind: JointKind, si: f64| format!("{:.1}", on_paper(kind, si));

@@ -3,7 +3,6 @@
 use super::kit::{Block, Document, Id, NONE, Section, Sentence, Table, counted, fact};
 use crate::{log::Understood, workflow::import::Imported};
 
-/// As sentences and tables.
 pub(crate) fn document(output: &str, imported: &Imported) -> Document {
     let Understood { file, time, joints, columns, unused, .. } = &imported.understood;
     let u = &imported.understood;

@@ -6,7 +6,6 @@ use super::{
 };
 use crate::log::Survey;
 
-/// As headings, sentences and tables.
 pub(crate) fn document(survey: &Survey) -> Document {
     let files = survey.files.iter().map(|f| {
         let state = if f.closed { "closed properly" } else { "NOT CLOSED" };

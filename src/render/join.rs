@@ -24,7 +24,6 @@ pub(crate) fn gathered(gathered: &Gathered, output: &Path) -> Document {
     Document::default().with(next::report(section, &[output])).remarked(remarks)
 }
 
-/// As sentences.
 pub(crate) fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {
     let Joined { sent, sent_is_command, located, at_s, duration_s, joints, messages, .. } = joined;
     let plan = plan.display();

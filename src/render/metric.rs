@@ -7,7 +7,6 @@ use crate::{
     units::degrees_from_radians,
 };
 
-/// The number alone.
 pub(super) fn number(dimension: Dimension, kind: JointKind, value: f64) -> String {
     match (dimension, kind) {
         (Dimension::Position | Dimension::Area, Turns) | (Dimension::Angle, _) => deg(value),
@@ -41,12 +40,10 @@ pub(super) fn unit(dimension: Dimension, kind: JointKind) -> &'static str {
     }
 }
 
-/// The number and its unit.
 pub(super) fn with_unit(dimension: Dimension, kind: JointKind, value: f64) -> String {
     format!("{} {}", number(dimension, kind, value), unit(dimension, kind)).trim_end().to_owned()
 }
 
-/// A position and its unit.
 pub(super) fn position(kind: JointKind, value: f64) -> String {
     with_unit(Dimension::Position, kind, value)
 }
@@ -159,7 +156,6 @@ impl Units {
         }
     }
 
-    /// A number that may be missing.
     pub(super) fn optional(self, dimension: Dimension, kind: JointKind, value: Option<f64>) -> String {
         optional(value, |value| self.cell(dimension, kind, value))
     }

@@ -3,7 +3,6 @@
 use super::kit::{Document, Id, Section, Sentence};
 use crate::log::Recovered;
 
-/// As sentences.
 pub(crate) fn document(output: &str, recovered: &Recovered) -> Document {
     let Recovered { messages, doubtful, blocks, dropped_blocks, attachments, remarks } = recovered;
     let saved = format!(

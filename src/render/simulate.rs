@@ -8,7 +8,6 @@ use super::{
 };
 use crate::workflow::simulate::log::Run;
 
-/// One line on a run, and one on what to do with it.
 pub(crate) fn document(run: &Run, plant: &str, seed: u64, file: &Path) -> Document {
     let record = &run.outputs.record;
     let duration_s = record.t_s.last().copied().unwrap_or(0.0);

@@ -26,7 +26,6 @@ pub(super) fn clock(source: &SourceInfo) -> String {
     of_origin.map_or_else(|| format!("{} stamps", source.time_base.name()), |origin| origin.time.clone())
 }
 
-/// Why these.
 pub(super) fn why(source: &SourceInfo) -> String {
     match &source.origin {
         Some(_) => {
@@ -36,7 +35,6 @@ pub(super) fn why(source: &SourceInfo) -> String {
     }
 }
 
-/// Why this clock.
 pub(super) fn why_clock(source: &SourceInfo) -> Option<&str> {
     source.origin.is_none().then_some(&source.time_base_why)
 }

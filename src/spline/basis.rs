@@ -19,8 +19,7 @@ pub(super) fn constant<const L: usize>() -> Row<L> {
 
 /// Turns the row of degree `to - 1` into that of degree `to`, for instants in one piece.
 ///
-/// The row of degree g weighs the control points `piece..=piece + g` of the derivative of
-/// order `degree - g`.
+/// The row of degree g weighs the control points `piece..=piece + g` of the derivative of order `degree - g`.
 #[inline(always)]
 pub(super) fn raise<const L: usize>(
     row: &mut Row<L>,
@@ -42,7 +41,6 @@ pub(super) fn raise<const L: usize>(
     row[to.min(WIDTH - 1)] = saved;
 }
 
-/// The row of degree `DEGREE`.
 #[inline(always)]
 pub(super) fn row<const DEGREE: usize, const L: usize>(
     knots: &Knots,

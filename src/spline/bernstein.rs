@@ -96,8 +96,7 @@ impl Bernstein {
         }
     }
 
-    /// Calls `found` with every point inside (0, 1) where the slope changes sign; extra points
-    /// may be among them.
+    /// Calls `found` with every point inside (0, 1) where the slope changes sign; extra points may be among them.
     pub(super) fn stationary(&self, mut found: impl FnMut(f64)) {
         let c = self.coefficients();
         let largest = c.iter().fold(0.0, |most: f64, c| most.max(c.abs()));

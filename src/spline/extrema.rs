@@ -26,7 +26,6 @@ impl Extrema {
         if self.least.value.abs() > self.greatest.value.abs() { self.least } else { self.greatest }
     }
 
-    /// Takes in a value.
     pub(super) fn widen(&mut self, value: f64, t_s: f64) {
         if value < self.least.value {
             self.least = Extremum { value, t_s };
@@ -40,52 +39,33 @@ impl Extrema {
 /// How far a joint leaves the range between two neighbouring key points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overshoot {
-    /// Distance beyond the nearer key point, rad; positive above both, negative below, 0 for
-    /// none.
+    /// Distance beyond the nearer key point, rad; positive above both, negative below, 0 for none.
     pub beyond_rad: f64,
     /// Where the joint is farthest out.
     pub at: Extremum,
 }
 
 impl Spline {
-    /// Least and greatest control point: bounds of a quantity, much cheaper than
-    /// [`Spline::extrema`] and never tighter.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such joint.
+    /// Least and greatest control point: bounds of a quantity, much cheaper than [`Spline::extrema`] and never tighter.
     #[inline]
     pub fn hull(&self, joint: usize, quantity: Quantity) -> (f64, f64) {
         hull(self.control(joint, quantity))
     }
 
     /// Exact least and greatest value over the whole spline.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such joint.
     pub fn extrema(&self, joint: usize, quantity: Quantity) -> Extrema {
         self.extrema_within(joint, quantity, self.span_s())
     }
 
     /// The value of largest magnitude over the whole spline.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such joint.
     pub fn peak(&self, joint: usize, quantity: Quantity) -> Extremum {
         self.extrema(joint, quantity).peak()
     }
 
-    /// Exact least and greatest value between two instants; those outside the spline count as
-    /// its ends.
+    /// Exact least and greatest value between two instants; those outside the spline count as its ends.
     ///
     /// On every piece whose hull could hold a new extremum, the roots of the derivative are
     /// isolated by Descartes' rule in Bernstein form and refined by Newton's method.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such joint.
     pub fn extrema_within(&self, joint: usize, quantity: Quantity, (from_s, to_s): (f64, f64)) -> Extrema {
         let (start, end) = self.span_s();
         let (from_s, to_s) = (from_s.min(to_s).clamp(start, end), to_s.max(from_s).clamp(start, end));
@@ -154,10 +134,6 @@ impl Spline {
 
     /// How far a joint leaves the range of the key points `interval` and `interval + 1` between
     /// them: the larger of both sides.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such joint or interval.
     pub fn overshoot(&self, joint: usize, interval: usize) -> Overshoot {
         let ends = [self.points().of(interval)[joint], self.points().of(interval + 1)[joint]];
         let between = (self.t_s()[interval], self.t_s()[interval + 1]);

@@ -37,7 +37,6 @@ impl Degree {
 /// Knots and the reciprocals of their differences.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Knots {
-    /// Degree of the spline.
     pub(super) degree: usize,
     /// The knots, ends repeated `degree + 1` times, interior ones distinct.
     pub(super) u: Vec<f64>,
@@ -79,7 +78,6 @@ impl Knots {
         &self.reciprocals[(width - 1) * self.u.len() + i..width * self.u.len()]
     }
 
-    /// Number of control points.
     #[inline]
     pub(super) fn controls(&self) -> usize {
         self.u.len() - self.degree - 1

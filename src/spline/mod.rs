@@ -1,5 +1,4 @@
-//! Joint trajectories as B-splines through key points, with exact derivatives, extrema and
-//! integrals.
+//! Joint trajectories as B-splines through key points, with exact derivatives, extrema and integrals.
 //!
 //! The default is the sextic with knots at the mid-intervals: degree 6, C5, speed,
 //! acceleration and jerk given at both ends. Knots at the key points, as a literal reading of

@@ -52,8 +52,7 @@ pub struct Motion {
 impl Motion {
     /// Plans a motion: `t_s[i]` is when the arm arrives at key point i, s.
     ///
-    /// `ends` hold at the start and the end of the whole motion; next to a dwell all
-    /// derivatives are zero.
+    /// `ends` hold at the start and the end of the whole motion; next to a dwell all derivatives are zero.
     ///
     /// # Errors
     ///
@@ -222,8 +221,7 @@ impl Motion {
         }
     }
 
-    /// Root mean square of each joint's jerk over the whole motion, dwells included, rad/s³,
-    /// into `rms`, `[joint]`.
+    /// Root mean square of each joint's jerk over the whole motion, dwells included, rad/s³, into `rms`, `[joint]`.
     pub fn rms_jerk(&self, rms_rad_s3: &mut [f64]) {
         rms_rad_s3.fill(0.0);
         for segment in &self.segments {
@@ -235,11 +233,7 @@ impl Motion {
         }
     }
 
-    /// Exact least and greatest value over the whole motion.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such joint.
+    /// Exact least and greatest value over the whole motion; panics if there is no such joint.
     pub fn extrema(&self, joint: usize, quantity: Quantity) -> Extrema {
         let shifted = |segment: &Segment| {
             let mut extrema = segment.spline.extrema(joint, quantity);
@@ -261,8 +255,7 @@ fn start(t_s: &[f64], dwell_s: &[f64], point: usize) -> f64 {
     t_s[point] + dwell_s[point].max(0.0)
 }
 
-/// Times of the key points `first..=last` since the departure from the first, which is
-/// returned.
+/// Times of the key points `first..=last` since the departure from the first, which is returned.
 fn localise(t_s: &[f64], dwell_s: &[f64], first: usize, last: usize, local_s: &mut Vec<f64>) -> f64 {
     let start_s = start(t_s, dwell_s, first);
     local_s.clear();

@@ -40,16 +40,11 @@ impl KeyPoints {
         self.position_rad.len() / self.joints
     }
 
-    /// All joints at one key point, rad.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such key point.
+    /// All joints at one key point, rad; panics if there is no such key point.
     pub fn of(&self, point: usize) -> &[f64] {
         &self.position_rad[point * self.joints..][..self.joints]
     }
 
-    /// The key points `first..=last`.
     pub(super) fn stretch(&self, first: usize, last: usize) -> Self {
         let position_rad = self.position_rad[first * self.joints..(last + 1) * self.joints].to_vec();
         Self { joints: self.joints, position_rad }

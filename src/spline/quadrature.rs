@@ -70,8 +70,7 @@ impl Spline {
         }
     }
 
-    /// Adds each joint's exact integral of jerk squared over time, rad²/s⁵, to `integral`,
-    /// `[joint]`.
+    /// Adds each joint's exact integral of jerk squared over time, rad²/s⁵, to `integral`, `[joint]`.
     #[inline]
     pub fn add_squared_jerk(&self, integral: &mut [f64]) {
         dispatched(self, integral);
@@ -93,8 +92,7 @@ impl Spline {
         }
     }
 
-    /// Root mean square of each joint's jerk over the whole spline, rad/s³, into `rms`,
-    /// `[joint]`.
+    /// Root mean square of each joint's jerk over the whole spline, rad/s³, into `rms`, `[joint]`.
     pub fn rms_jerk(&self, rms_rad_s3: &mut [f64]) {
         rms_rad_s3.fill(0.0);
         self.add_squared_jerk(rms_rad_s3);

@@ -31,11 +31,7 @@ impl Samples {
         &self.values[quantity.order()]
     }
 
-    /// One quantity of one joint, `[instant]`.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such joint or the quantity was not asked for.
+    /// One quantity of one joint, `[instant]`; panics if there is no such joint or the quantity was not asked for.
     pub fn of(&self, quantity: Quantity, joint: usize) -> &[f64] {
         &self.all(quantity)[joint * self.instants..][..self.instants]
     }
@@ -54,7 +50,6 @@ impl Samples {
         }
     }
 
-    /// Fills columns with a rest.
     pub(super) fn hold(&mut self, position_rad: &[f64], columns: Range<usize>) {
         let stride = self.instants;
         for (order, values) in self.values.iter_mut().enumerate() {
@@ -66,8 +61,7 @@ impl Samples {
 }
 
 impl Spline {
-    /// Position, velocity, acceleration and jerk of all joints at one instant; at the nearer
-    /// end if it lies outside.
+    /// Position, velocity, acceleration and jerk of all joints at one instant; at the nearer end if it lies outside.
     pub fn at(&self, t_s: f64) -> Samples {
         let mut samples = Samples::default();
         self.sample(&[t_s], Quantity::Jerk, &mut samples);
@@ -81,8 +75,7 @@ impl Spline {
         self.sample_into(t_s, 0.0, through, samples, 0);
     }
 
-    /// As [`Spline::sample`], at instants since `origin_s`, into the columns from `first` on of
-    /// samples that have room.
+    /// As [`Spline::sample`], at instants since `origin_s`, into the columns from `first` on of samples that have room.
     #[inline]
     pub(super) fn sample_into(
         &self,

@@ -52,10 +52,6 @@ impl Spline {
 
     /// Calls `found` with every share of a piece, inside (0, 1), at which a quantity's slope changes sign, and the
     /// quantity there, rad and s; extra places may be among them.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such joint or piece.
     pub fn stationary(
         &self,
         joint: usize,
@@ -74,11 +70,9 @@ impl Spline {
     pub fn weights(&self, place: Place) -> Weights {
         let t_s = self.t_s();
         let last = self.pieces() - 1;
-        let piece = match place {
-            Place::Piece(piece, _) => piece.min(last),
-            // The sextic's point lies in the piece of its own number, the others' is where that piece starts.
-            Place::Point(point) => point.min(last),
-        };
+        // The sextic's point lies in the piece of its own number, the others' is where that piece starts.
+        let (Place::Piece(piece, _) | Place::Point(piece)) = place;
+        let piece = piece.min(last);
         let degree = self.degree().order();
         let frame = Frame { spline: self, first: first_interval(self.degree(), piece) };
         let knots: Vec<Sloped> = (1..=2 * degree).map(|k| frame.knot(piece + k)).collect();

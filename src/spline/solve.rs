@@ -50,9 +50,8 @@ impl Band {
         if inverse <= LARGEST_INVERSE { Ok(()) } else { Err(SplineError::IllConditioned { inverse }) }
     }
 
-    /// Maximum norm of the inverse; infinite if a pivot vanished. The inverse of a
-    /// totally positive matrix has the signs of a chessboard, so the key points 1, -1, 1, ...
-    /// attain it.
+    /// Maximum norm of the inverse; infinite if a pivot vanished. The inverse of a totally positive matrix has the
+    /// signs of a chessboard, so the key points 1, -1, 1, ... attain it.
     fn inverse_norm(&mut self) -> f64 {
         let mut probe = std::mem::take(&mut self.probe);
         probe.fill(0.0);

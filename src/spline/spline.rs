@@ -5,12 +5,11 @@ use super::{Degree, Ends, KeyPoints, Quantity, SplineError, error::check, knots:
 /// Shortest interval relative to the largest stamp, far above the rounding of mid-points.
 const LEAST_INTERVAL: f64 = 1e-12;
 
-/// Shortest interval, s.
 const LEAST_INTERVAL_S: f64 = 1e-6;
 
 /// A B-spline of all joints through key points at strictly increasing times.
 ///
-/// Outside its time span it holds the state of the nearer end.
+/// Outside its time span it holds the state of the nearer end. A joint, piece or interval that there is not panics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline {
     degree: Degree,
@@ -149,12 +148,7 @@ impl Spline {
         &self.knots.u
     }
 
-    /// Control points of one joint's position or derivative. The curve lies between the least
-    /// and the greatest of them.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such joint.
+    /// Control points of one joint's position or derivative. The curve lies between the least and the greatest of them.
     #[inline]
     pub fn control(&self, joint: usize, quantity: Quantity) -> &[f64] {
         let order = quantity.order();

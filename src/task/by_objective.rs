@@ -105,7 +105,6 @@ impl IndexMut<Objective> for ByObjective {
     }
 }
 
-/// Known values by their keys.
 impl Serialize for ByObjective {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;

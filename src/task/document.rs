@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-/// Values by joint.
 pub(super) type ByJoint = BTreeMap<String, f64>;
 
 /// A task: what an arm is to do.

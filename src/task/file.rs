@@ -54,13 +54,8 @@ fn parse(text: &str) -> Result<Task, TaskError> {
     };
     let payload_kg = file.payload_kg;
     if !(payload_kg.is_finite() && payload_kg >= 0.0) {
-        let expected = "a mass of zero or more is expected";
-        return Err(TaskError::Value {
-            line: 1,
-            key: "payload_kg".into(),
-            found: payload_kg.to_string(),
-            expected,
-        });
+        let (key, found) = ("payload_kg".to_owned(), payload_kg.to_string());
+        return Err(TaskError::Value { line: 1, key, found, expected: "a mass of zero or more is expected" });
     }
     let interval_s = match &file.interval_s {
         None => INTERVAL_S,
@@ -68,9 +63,7 @@ fn parse(text: &str) -> Result<Task, TaskError> {
             let [low, high] = *given.get_ref();
             if !(low > 0.0 && high.is_finite() && high >= low) {
                 let found = format!("[{low}, {high}]");
-                let expected = "0 < shortest <= longest is expected";
-                let line = line_of(text, &given.span());
-                return Err(TaskError::Value { line, key: "interval_s".into(), found, expected });
+                return Err(reader.wrong("interval_s", given, found, "0 < shortest <= longest is expected"));
             }
             [low, high]
         }
@@ -80,14 +73,8 @@ fn parse(text: &str) -> Result<Task, TaskError> {
         let (key, why) = ("point".to_owned(), "a plan leads from one key point to another");
         return Err(TaskError::Length { line: 1, key, found: points.len(), expected: 2, why });
     }
-    let times_s = match &file.times_s {
-        None => None,
-        Some(times) => Some(reader.times(times, points.len())?),
-    };
-    let bound = |key, value: &Option<Spanned<f64>>| match value {
-        Some(given) => reader.positive(key, given).map(Some),
-        None => Ok(None),
-    };
+    let times_s = file.times_s.as_ref().map(|times| reader.times(times, points.len())).transpose()?;
+    let tool_speed = file.limits.tool_speed_m_s.as_ref();
     let arm = reader.arm(&file)?;
     Ok(Task {
         title: file.title,
@@ -102,7 +89,8 @@ fn parse(text: &str) -> Result<Task, TaskError> {
         end: joints.boundary("end", file.end.as_ref())?,
         interval_s,
         limits: joints.limits(&file.limits)?,
-        tool_speed_m_s: bound("limits.tool_speed_m_s", &file.limits.tool_speed_m_s)?.unwrap_or(f64::INFINITY),
+        tool_speed_m_s: tool_speed
+            .map_or(Ok(f64::INFINITY), |given| reader.positive("limits.tool_speed_m_s", given))?,
         ceilings: reader.ceilings(&file.objectives)?,
         weights: reader.weights(file.weights.as_ref())?,
         times_s,
@@ -141,14 +129,12 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn value<T: std::fmt::Display>(
-        &self,
-        key: &str,
-        given: &Spanned<T>,
-        expected: &'static str,
-    ) -> TaskError {
-        let line = line_of(self.text, &given.span());
-        TaskError::Value { line, key: key.to_owned(), found: given.get_ref().to_string(), expected }
+    fn value<T: ToString>(&self, key: &str, given: &Spanned<T>, expected: &'static str) -> TaskError {
+        self.wrong(key, given, given.get_ref().to_string(), expected)
+    }
+
+    fn wrong<T>(&self, key: &str, given: &Spanned<T>, found: String, expected: &'static str) -> TaskError {
+        TaskError::Value { line: line_of(self.text, &given.span()), key: key.to_owned(), found, expected }
     }
 
     fn positive(&self, key: &str, given: &Spanned<f64>) -> Result<f64, TaskError> {
@@ -173,10 +159,8 @@ impl Reader<'_> {
         {
             let keys: Vec<String> = known().map(|objective| format!("`{}`", key(objective.row()))).collect();
             let message = format!("unknown field `{name}`, expected one of {}", keys.join(", "));
-            return Err(TaskError::Syntax {
-                line: line_of(self.text, &value.span()),
-                message: syntax(&message),
-            });
+            let line = line_of(self.text, &value.span());
+            return Err(TaskError::Syntax { line, message: syntax(&message) });
         }
         let value = |objective: Objective| table.get(key(objective.row())).map(|value| *value.get_ref());
         Ok(ByObjective::NONE.map_plan(|objective| value(objective).unwrap_or(otherwise)))
@@ -197,12 +181,8 @@ impl Reader<'_> {
         if weights.are_weights() {
             return Ok(Some(weights));
         }
-        Err(TaskError::Value {
-            line: line_of(self.text, &given.span()),
-            key: "weights".into(),
-            found: format!("{:?}", weights.plan()),
-            expected: "weights of zero or more, not all zero, are expected",
-        })
+        let expected = "weights of zero or more, not all zero, are expected";
+        Err(self.wrong("weights", given, format!("{:?}", weights.plan()), expected))
     }
 
     fn arm(&self, file: &Document) -> Result<ArmSource, TaskError> {
@@ -242,11 +222,8 @@ impl Reader<'_> {
                 return Err(self.value("payload_kg", payload, "a mass of zero or more is expected"));
             }
             Some(payload) if dwell_s.is_none() => {
-                return Err(self.value(
-                    "payload_kg",
-                    payload,
-                    "a payload changes at a dwell: give dwell_s too",
-                ));
+                let expected = "a payload changes at a dwell: give dwell_s too";
+                return Err(self.value("payload_kg", payload, expected));
             }
             payload => payload.as_ref().map(|p| *p.get_ref()),
         };
@@ -259,23 +236,21 @@ impl Reader<'_> {
         if size_m.iter().all(|m| (0.0..1e3).contains(m)) {
             return Ok(size_m);
         }
-        let (key, found) = ("payload_size_m".to_owned(), format!("{size_m:?}"));
         let expected = "three lengths of zero or more are expected";
-        Err(TaskError::Value { line: line_of(self.text, &given.span()), key, found, expected })
+        Err(self.wrong("payload_size_m", given, format!("{size_m:?}"), expected))
     }
 
     fn times(&self, given: &Spanned<Vec<f64>>, points: usize) -> Result<Vec<f64>, TaskError> {
         let times = given.get_ref();
-        let line = line_of(self.text, &given.span());
-        let key = "times_s".to_owned();
         if times.len() != points {
+            let (line, key) = (line_of(self.text, &given.span()), "times_s".to_owned());
             let why = "one for each key point: its arrival, dwells counted";
             return Err(TaskError::Length { line, key, found: times.len(), expected: points, why });
         }
         let bad = |pair: &&[f64]| !(pair[1] > pair[0] && pair[1].is_finite());
         if let Some([before, after]) = times.windows(2).find(bad) {
             let found = format!("{after} after {before}");
-            return Err(TaskError::Value { line, key, found, expected: "increasing times are expected" });
+            return Err(self.wrong("times_s", given, found, "increasing times are expected"));
         }
         Ok(times.clone())
     }

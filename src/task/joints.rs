@@ -21,10 +21,6 @@ pub(super) struct Given<'a, T> {
 }
 
 impl<'a, T> Given<'a, T> {
-    fn of(prefix: &str, keys: [&str; 2], turns: Table<'a, T>, slides: Table<'a, T>) -> Self {
-        Self { keys: keys.map(|key| format!("{prefix}{key}")), tables: [turns, slides] }
-    }
-
     /// The tables that there are, with their keys and the kind of their joints.
     fn tables(&self) -> impl Iterator<Item = (&str, JointKind, &'a Spanned<BTreeMap<String, T>>)> {
         let kinds = [JointKind::Turns, JointKind::Slides];
@@ -40,51 +36,40 @@ impl<'a, T> Given<'a, T> {
     }
 }
 
-/// The positions of a key point.
+/// Two fields of a part of the file, whose keys they are behind a prefix.
+macro_rules! given {
+    ($prefix:expr, $part:ident, $turns:ident, $slides:ident) => {
+        Given {
+            keys: [stringify!($turns), stringify!($slides)].map(|key| [$prefix, key].concat()),
+            tables: [$part.$turns.as_ref(), $part.$slides.as_ref()],
+        }
+    };
+}
+
 pub(super) fn positions(point: &Point) -> Given<'_, f64> {
-    Given::of("", ["angles_deg", "positions_mm"], point.angles_deg.as_ref(), point.positions_mm.as_ref())
+    given!("", point, angles_deg, positions_mm)
 }
 
 fn at_end<'a>(end: &str, given: &'a End) -> [Given<'a, f64>; 3] {
-    let prefix = format!("{end}.");
+    let prefix = &*format!("{end}.");
     [
-        Given::of(
-            &prefix,
-            ["speed_deg_s", "speed_mm_s"],
-            given.speed_deg_s.as_ref(),
-            given.speed_mm_s.as_ref(),
-        ),
-        Given::of(
-            &prefix,
-            ["acceleration_deg_s2", "acceleration_mm_s2"],
-            given.acceleration_deg_s2.as_ref(),
-            given.acceleration_mm_s2.as_ref(),
-        ),
-        Given::of(
-            &prefix,
-            ["jerk_deg_s3", "jerk_mm_s3"],
-            given.jerk_deg_s3.as_ref(),
-            given.jerk_mm_s3.as_ref(),
-        ),
+        given!(prefix, given, speed_deg_s, speed_mm_s),
+        given!(prefix, given, acceleration_deg_s2, acceleration_mm_s2),
+        given!(prefix, given, jerk_deg_s3, jerk_mm_s3),
     ]
 }
 
 fn of_limits(given: &Limits) -> [Given<'_, f64>; 4] {
-    let of = |keys, turns, slides| Given::of("limits.", keys, turns, slides);
     [
-        of(["speed_deg_s", "speed_mm_s"], given.speed_deg_s.as_ref(), given.speed_mm_s.as_ref()),
-        of(
-            ["acceleration_deg_s2", "acceleration_mm_s2"],
-            given.acceleration_deg_s2.as_ref(),
-            given.acceleration_mm_s2.as_ref(),
-        ),
-        of(["jerk_deg_s3", "jerk_mm_s3"], given.jerk_deg_s3.as_ref(), given.jerk_mm_s3.as_ref()),
-        of(["torque_n_m", "force_n"], given.torque_n_m.as_ref(), given.force_n.as_ref()),
+        given!("limits.", given, speed_deg_s, speed_mm_s),
+        given!("limits.", given, acceleration_deg_s2, acceleration_mm_s2),
+        given!("limits.", given, jerk_deg_s3, jerk_mm_s3),
+        given!("limits.", given, torque_n_m, force_n),
     ]
 }
 
 fn ranges(given: &Limits) -> Given<'_, [f64; 2]> {
-    Given::of("limits.", ["range_deg", "range_mm"], given.range_deg.as_ref(), given.range_mm.as_ref())
+    given!("limits.", given, range_deg, range_mm)
 }
 
 /// In rad, or in m, and their derivatives.
@@ -201,23 +186,29 @@ impl Joints<'_> {
         given: &Given<'_, f64>,
         otherwise: Option<f64>,
     ) -> Result<Vec<f64>, TaskError> {
+        let values = self.checked(given, otherwise, f64::is_finite, "finite numbers are expected")?;
+        Ok(values.into_iter().map(|(value, kind)| si(kind, value)).collect())
+    }
+
+    /// As [`Self::by_joint`], each as it may be.
+    fn checked(
+        &self,
+        given: &Given<'_, f64>,
+        otherwise: Option<f64>,
+        may_be: fn(f64) -> bool,
+        expected: &'static str,
+    ) -> Result<Vec<(f64, JointKind)>, TaskError> {
         let values = self.by_joint(given, otherwise)?;
-        match values.iter().find(|(value, _)| !value.is_finite()) {
-            Some((value, kind)) => {
-                Err(self.wrong(given, *kind, value.to_string(), "finite numbers are expected"))
-            }
-            None => Ok(values.into_iter().map(|(value, kind)| si(kind, value)).collect()),
+        match values.iter().find(|(value, _)| !may_be(*value)) {
+            Some((value, kind)) => Err(self.wrong(given, *kind, value.to_string(), expected)),
+            None => Ok(values),
         }
     }
 
     pub(super) fn boundary(&self, end: &str, given: Option<&End>) -> Result<Boundary, TaskError> {
         let Some(given) = given else {
-            let rest = vec![0.0; self.names.len()];
-            return Ok(Boundary {
-                velocity_rad_s: rest.clone(),
-                acceleration_rad_s2: rest.clone(),
-                jerk_rad_s3: rest,
-            });
+            let rest = || vec![0.0; self.names.len()];
+            return Ok(Boundary { velocity_rad_s: rest(), acceleration_rad_s2: rest(), jerk_rad_s3: rest() });
         };
         let [speed, acceleration, jerk] = at_end(end, given);
         Ok(Boundary {
@@ -228,13 +219,7 @@ impl Joints<'_> {
     }
 
     fn above_zero(&self, given: &Given<'_, f64>) -> Result<Vec<(f64, JointKind)>, TaskError> {
-        let found = self.by_joint(given, Some(f64::INFINITY))?;
-        match found.iter().find(|(value, _)| value.is_nan() || *value <= 0.0) {
-            Some((value, kind)) => {
-                Err(self.wrong(given, *kind, value.to_string(), "limits above zero are expected"))
-            }
-            None => Ok(found),
-        }
+        self.checked(given, Some(f64::INFINITY), |value| value > 0.0, "limits above zero are expected")
     }
 
     pub(super) fn limits(&self, limits: &Limits) -> Result<Vec<JointLimits>, TaskError> {
@@ -254,10 +239,8 @@ impl Joints<'_> {
         };
         let (speed, acceleration, jerk) = (rate(&speed)?, rate(&acceleration)?, rate(&jerk)?);
         let effort = self.above_zero(&effort)?;
-        let rod = Given {
-            keys: ["limits.rod_speed_m_s"; 2].map(str::to_owned),
-            tables: [limits.rod_speed_m_s.as_ref(), None],
-        };
+        let keys = ["limits.rod_speed_m_s"; 2].map(str::to_owned);
+        let rod = Given { keys, tables: [limits.rod_speed_m_s.as_ref(), None] };
         let rod_speed = self.above_zero(&rod)?;
         let joints = found.into_iter().enumerate().map(|(j, found)| JointLimits {
             range_rad: range(found),

@@ -109,8 +109,7 @@ pub struct Task {
     pub points: Vec<KeyPoint>,
     /// Payload before the first change, kg.
     pub payload_kg: f64,
-    /// Size of any payload, a box that reaches from the tool's origin forward along its x axis,
-    /// m; zeros for a point.
+    /// Size of any payload, a box that reaches from the tool's origin forward along its x axis, m; zeros for a point.
     pub payload_size_m: [f64; 3],
     /// State in which the plan starts.
     pub start: Boundary,

@@ -14,7 +14,6 @@ use crate::{
     workflow::view::{MovingArm, Poses},
 };
 
-/// How an arm is shown.
 #[derive(Clone, Copy)]
 pub(super) enum Look {
     /// As it was measured in a run: the first in its own colours, others in theirs, seen through.

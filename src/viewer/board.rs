@@ -9,7 +9,6 @@ use rerun::{
 
 use super::ViewError;
 
-/// The name of our recordings and blueprints in Rerun.
 pub(super) const APPLICATION: &str = "hydrotrace";
 
 type Batches = Vec<rerun::SerializedComponentBatch>;
@@ -38,7 +37,6 @@ impl Board {
         view
     }
 
-    /// The whole.
     pub(super) fn finish(mut self, of: impl FnOnce() -> Blueprint) -> Self {
         self.blueprint = of();
         self

@@ -15,7 +15,6 @@ const JOINTS: [[u8; 3]; 7] = [
     [213, 94, 0],
     [204, 121, 167],
 ];
-/// Of planned motion.
 const PLANNED: [u8; 3] = [185, 220, 255];
 /// Of axes and text.
 pub(super) const AXIS: [u8; 3] = [130, 135, 145];

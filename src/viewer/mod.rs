@@ -23,71 +23,45 @@ use crate::{
     workflow::view::Scene,
 };
 
-/// Where to show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Target {
-    /// A file.
     Save(PathBuf),
-    /// Start a viewer.
     Spawn,
     /// A viewer that already listens at an address.
     Connect(String),
-    /// Start a viewer for browsers.
     Web,
 }
 
-/// Why nothing is shown.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub(crate) enum ViewError {
-    /// Rerun does not take it.
     #[error("the viewer cannot be reached or written to")]
     Rerun(#[from] RecordingStreamError),
-    /// Rerun does not take the values.
     #[error("the viewer does not take the data")]
     Values(#[from] SerializationError),
-    /// Rerun does not encode its own blueprint.
     #[error("the blueprint cannot be encoded")]
     Blueprint(#[source] Box<dyn std::error::Error + Send + Sync>),
-    /// Rerun draws none of the messages.
     #[error(
         "Rerun draws no messages of the types in this log; `hydrotrace view` shows it, and `hydrotrace export LOG -o \
          run.csv` with `hydrotrace import run.csv -o run.mcap` makes a log that Rerun draws"
     )]
     Undrawn,
-    /// The file takes no bytes.
     #[error("cannot write the blueprint")]
     Write(#[source] io::Error),
-    /// The file cannot be written.
     #[error(transparent)]
     File(#[from] AtomicError),
-    /// Nobody listens, or no longer.
     #[error(
         "no viewer takes the data at {place} ({reason}); start one there with `rerun`, or leave --connect out"
     )]
-    Unheard {
-        /// Address or file.
-        place: String,
-        /// What Rerun says of it.
-        reason: String,
-    },
-    /// The program `rerun` is not there.
+    Unheard { place: String, reason: String },
     #[error("there is no program rerun on the PATH; this brings it: pip install rerun-sdk==0.36.3")]
     NoProgram,
-    /// The program `rerun` cannot be run.
     #[error("cannot run the program rerun")]
     Program(#[source] io::Error),
-    /// The program `rerun` ended at once or does not listen.
     #[error("the program rerun {0}; what it says is above")]
     Silent(String),
-    /// A mesh cannot be read.
     #[error("cannot read {}", path.display())]
-    Mesh {
-        /// Its file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
+    Mesh { path: PathBuf, source: io::Error },
 }
 
 /// Time that a viewer has for its first answer.
@@ -95,10 +69,6 @@ const PATIENCE: Duration = Duration::from_secs(15);
 
 /// Shows runs, at once or in real time at a given speed. Announces the address of a viewer for browsers, and waits
 /// until it ends.
-///
-/// # Errors
-///
-/// [`ViewError`] if the viewer cannot be started, reached or written to, or `announce` fails.
 pub(crate) fn show(
     scenes: &[Scene],
     target: &Target,

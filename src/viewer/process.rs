@@ -32,7 +32,6 @@ impl Page {
         self.child.wait().map(|_| ()).map_err(ViewError::Program)
     }
 
-    /// Ends it.
     pub(super) fn end(&mut self) {
         // It may have ended by itself.
         let _ = self.child.kill();
@@ -53,7 +52,6 @@ pub(super) fn window() -> Result<String, ViewError> {
     Ok(url(port))
 }
 
-/// Starts a viewer for browsers of this machine.
 pub(super) fn page() -> Result<Page, ViewError> {
     let port = |wanted: u16| free(wanted).map_err(ViewError::Program);
     let (data, page) = (port(PORTS[0])?, port(PORTS[1])?);

@@ -73,12 +73,10 @@ pub(super) fn send_static(
     Ok(streams)
 }
 
-/// The entity of a run.
 pub(super) fn root(scene: &Scene) -> String {
     format!("/{}", part(&scene.name))
 }
 
-/// The entity of a joint of a run.
 pub(super) fn joint(scene: &Scene, name: &str) -> String {
     format!("{}/joints/{}", root(scene), part(name))
 }

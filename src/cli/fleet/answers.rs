@@ -117,16 +117,11 @@ impl FormArgs {
     fn target(&self) -> Result<Target<'_>, CliError> {
         let file = self.output.as_deref();
         spare_inputs(file, &[])?;
-        let forms = [
-            (self.json, Form::Json),
-            (self.markdown, Form::Markdown),
-            (self.csv, Form::Csv),
-            (self.html, Form::Html),
-        ];
+        let Self { json, csv, markdown, html, .. } = *self;
+        let forms = [(json, Form::Json), (markdown, Form::Markdown), (csv, Form::Csv), (html, Form::Html)];
         Target::new(Form::of(&forms, file), file)
     }
 
-    /// Writes an answer in the form that was asked for.
     fn write<T: Serialize>(
         &self,
         console: &mut Console<'_>,

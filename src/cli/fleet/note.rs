@@ -47,9 +47,8 @@ impl Run for Args {
         if let (Some(what), Some(machine), Some(at_us)) = (&self.what, &self.machine, self.at) {
             let what = what.split_whitespace().collect::<Vec<_>>().join(" ");
             if what.is_empty() {
-                return Err(CliError::Usage(
-                    "nothing is said of what was done: 'valve replaced', say".to_owned(),
-                ));
+                let why = "nothing is said of what was done: 'valve replaced', say";
+                return Err(CliError::Usage(why.to_owned()));
             }
             let one = Note { at_us, machine: machine.clone(), joint: self.joint.clone(), what };
             if self.remove {
@@ -59,12 +58,7 @@ impl Run for Args {
             }
         }
         let found = Notes::of(&notes(&self.dataset, self.machine.as_deref())?);
-        console.answer(
-            self.json,
-            &found,
-            || words::notes(&found, made.as_ref(), &self.dataset),
-            &Remarks::default(),
-            &[],
-        )
+        let shown = || words::notes(&found, made.as_ref(), &self.dataset);
+        console.answer(self.json, &found, shown, &Remarks::default(), &[])
     }
 }

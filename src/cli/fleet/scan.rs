@@ -44,13 +44,9 @@ pub(crate) struct SourceArgs {
 impl SourceArgs {
     /// These, read with the caller's options.
     pub(crate) fn inputs(&self, read: &ReadArgs) -> Result<Inputs, CliError> {
-        Ok(Inputs {
-            sources: self.sources.clone(),
-            into: self.into.clone(),
-            machine: MachineFrom::parse(&self.machine_from)?,
-            read: read.options(),
-            ..Inputs::default()
-        })
+        let (sources, into, read) = (self.sources.clone(), self.into.clone(), read.options());
+        let machine = MachineFrom::parse(&self.machine_from)?;
+        Ok(Inputs { sources, into, machine, read, ..Inputs::default() })
     }
 }
 
@@ -79,11 +75,8 @@ pub(super) struct Args {
 
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
-        let inputs = Inputs {
-            workers: self.workers.map_or(0, NonZeroUsize::get),
-            fit: self.fit,
-            ..self.source.inputs(&self.read)?
-        };
+        let workers = self.workers.map_or(0, NonZeroUsize::get);
+        let inputs = Inputs { workers, fit: self.fit, ..self.source.inputs(&self.read)? };
         let bar = progress(Some(0), "{spinner} {elapsed}  {msg}, {eta} left");
         bar.enable_steady_tick(Duration::from_millis(200));
         let done = scan(&inputs, &|now| {

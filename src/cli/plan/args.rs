@@ -200,7 +200,6 @@ impl Args {
         Form::of(&forms, self.output.as_deref())
     }
 
-    /// Where the log goes.
     pub(super) fn log(&self) -> Option<&Path> {
         self.output.as_deref().filter(|_| self.page().is_none())
     }

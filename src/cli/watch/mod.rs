@@ -77,13 +77,9 @@ impl Args {
     fn inputs(&self) -> Result<Inputs, CliError> {
         let [every, settle] = [self.every, self.settle].map(Duration::try_from_secs_f64);
         let longer = |_| CliError::Usage("no folder is watched that long; give fewer seconds".to_owned());
-        Ok(Inputs {
-            fleet: self.source.inputs(&self.read)?,
-            gates: self.gates.gates.clone(),
-            every: every.map_err(longer)?,
-            settle: settle.map_err(longer)?,
-            once: self.once,
-        })
+        let (fleet, gates) = (self.source.inputs(&self.read)?, self.gates.gates.clone());
+        let (every, settle) = (every.map_err(longer)?, settle.map_err(longer)?);
+        Ok(Inputs { fleet, gates, every, settle, once: self.once })
     }
 }
 

@@ -17,11 +17,6 @@ use crate::{
     workflow::compare::Comparison,
 };
 
-/// The plots of a comparison.
-///
-/// # Errors
-///
-/// What the drawing library says.
 pub(crate) fn figures(comparison: &Comparison) -> Result<Vec<Figure>, Failure> {
     let mut figures = Vec::new();
     for (k, all) in together(comparison).enumerate() {

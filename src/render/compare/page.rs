@@ -45,11 +45,8 @@ pub(crate) fn page(comparison: &Comparison, most: usize) -> String {
             Chapter { id: "joints", heading: "Error over the run", body: runs(comparison, &mut plots) },
         ]);
     }
-    chapters.push(Chapter::new(
-        "numbers",
-        "Numbers",
-        html! { @for section in numbers { (headed(section)) } },
-    ));
+    let numbers = html! { @for section in numbers { (headed(section)) } };
+    chapters.push(Chapter { id: "numbers", heading: "Numbers", body: numbers });
     chapters.extend(Chapter::of(document.section(Id::REMARKS), "Remarks on the data"));
     chapters.extend(Chapter::of(document.section(Id::METHOD), "Method"));
     kit::page::page("comparison", &document, &chapters, &plots)
@@ -62,9 +59,8 @@ fn summary(comparison: &Comparison) -> Markup {
         let headline = if idle == Idle::NoPair { "Not comparable" } else { "The same run twice" };
         let why = match idle {
             Idle::NoPair => {
-                "No planned start of one side has a counterpart in the other.".to_owned()
-                    + " "
-                    + &plans(comparison)
+                let none = "No planned start of one side has a counterpart in the other.";
+                format!("{none} {}", plans(comparison))
             }
             Idle::SameRun => {
                 "Both sides are one and the same run: their difference says nothing of a change.".to_owned()
@@ -147,20 +143,13 @@ pub(super) fn change_rows(comparison: &Comparison, of: JointKind) -> Vec<Row> {
         let mean = summary.mean_difference?;
         let interval = summary.interval_95;
         let kind = kind(comparison, &summary.scope);
-        let alone = |d: f64| number(Dimension::Position, kind, d);
+        let alone = |d: f64| signed(d, |d| number(Dimension::Position, kind, d));
+        let between = interval.map_or(String::new(), |[a, b]| format!(" ({}..{})", alone(a), alone(b)));
         Some(Row {
             name: scope(&summary.scope),
             value: on_paper(kind, mean),
             interval: interval.map(|ends| ends.map(|end| on_paper(kind, end))),
-            text: format!(
-                "{}{}",
-                signed(mean, |d| position(kind, d)),
-                interval.map_or(String::new(), |[a, b]| format!(
-                    " ({}..{})",
-                    signed(a, alone),
-                    signed(b, alone)
-                ))
-            ),
+            text: signed(mean, |d| position(kind, d)) + &between,
             strong: summary.scope == Scope::All,
         })
     });
@@ -221,11 +210,8 @@ fn scatter(
     let [low, high] = span(pairs.iter().flat_map(|(_, both)| *both).chain([0.0]));
     let ends =
         [rounded(low - 0.05 * (high - low) * f64::from(low < 0.0)), rounded(high + 0.05 * (high - low))];
-    Chart {
-        title: title.to_owned(),
-        height: 360,
-        ..Chart::against(labels, ["no change", "transition"], ends, pairs)
-    }
+    let chart = Chart::against(labels, ["no change", "transition"], ends, pairs);
+    Chart { title: title.to_owned(), height: 360, ..chart }
 }
 
 fn runs(comparison: &Comparison, plots: &mut Plots) -> Markup {

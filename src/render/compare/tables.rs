@@ -28,20 +28,16 @@ pub(crate) fn document(comparison: &Comparison, most: usize) -> Document {
     document.sections.push(Section::new(Id::OTHER, "Whole run, before -> after", whole_run));
     document.sections.extend(tool(comparison));
     document.sections.extend(unpaired(comparison));
-    document.remarked(&comparison.remarks).with(Section::new(
-        Id::METHOD,
-        "How",
-        [Block::Facts(how(comparison))],
-    ))
+    let method = Section::new(Id::METHOD, "How", [Block::Facts(how(comparison))]);
+    document.remarked(&comparison.remarks).with(method)
 }
 
 fn run_facts(comparison: &Comparison) -> Vec<Fact> {
     let of_run = |side: &str, run: &Run| {
         let plan = run.plan_duration_s.map_or(String::new(), |s| format!(", plan {s:.2} s"));
         let source = &run.source;
-        let compared = run
-            .stretch_s
-            .map_or(String::new(), |[from_s, to_s]| format!(" ({from_s:.2} to {to_s:.2} s compared)"));
+        let within = |[from_s, to_s]: [f64; 2]| format!(" ({from_s:.2} to {to_s:.2} s compared)");
+        let compared = run.stretch_s.map_or(String::new(), within);
         let text = format!(
             "{}: {:.2} s{compared}{plan}, {}; planned {}, measured {}",
             run.log,
@@ -93,11 +89,8 @@ fn pairs(comparison: &Comparison, most: usize) -> Option<Section> {
         row
     });
     let table = Table::of(columns, rows.collect::<Vec<_>>());
-    let more = (worst.len() > most).then(|| {
-        Sentence::note(format!(
-            "and {} more whose peak grew by less, or fell (--all lists them)",
-            worst.len() - most
-        ))
+    let more = worst.len().checked_sub(most).filter(|more| *more > 0).map(|more| {
+        Sentence::note(format!("and {more} more whose peak grew by less, or fell (--all lists them)"))
     });
     let mixed = weighed(&comparison.rules, worst.iter().map(|pair| pair.joint_kind));
     (!worst.is_empty()).then(|| {
@@ -111,15 +104,10 @@ fn summary(comparison: &Comparison, metric: &Metric<Transition>) -> Option<Secti
         comparison.summaries.iter().filter(|s| s.measure.key == metric.key && s.pairs > 0).collect();
     let units = Units::of(of.iter().map(|summary| kind(comparison, &summary.scope)));
     let before = units.heading("before", metric.dimension);
-    let columns = std::iter::once(Column::words("transitions"))
-        .chain(std::iter::once(Column::numbers(before).meaning(metric.explanation)))
-        .chain(
-            [
-                "after", "change", "95 %", "median", "%", "p", "verdict", "pairs", "events", "smaller",
-                "larger",
-            ]
-            .map(Column::numbers),
-        );
+    let first = [Column::words("transitions"), Column::numbers(before).meaning(metric.explanation)];
+    let others =
+        ["after", "change", "95 %", "median", "%", "p", "verdict", "pairs", "events", "smaller", "larger"];
+    let columns = first.into_iter().chain(others.map(Column::numbers));
     let rows: Vec<Vec<String>> = of.iter().map(|summary| summary_row(comparison, summary, units)).collect();
     let some = !rows.is_empty();
     let title = format!("Change of the {} at transitions", metric.name);
@@ -165,10 +153,7 @@ fn figures_table(figures: &[Figures]) -> Table {
         });
         std::iter::once(scope(&f.scope)).chain(cells).collect()
     });
-    Table::of(
-        std::iter::once(Column::words("joint")).chain(metrics).collect::<Vec<_>>(),
-        rows.collect::<Vec<Vec<String>>>(),
-    )
+    Table::of(std::iter::once(Column::words("joint")).chain(metrics), rows)
 }
 
 fn tool(comparison: &Comparison) -> Option<Section> {
@@ -208,8 +193,11 @@ fn unpaired(comparison: &Comparison) -> Option<Section> {
 }
 
 fn how(comparison: &Comparison) -> Vec<Fact> {
-    let rules = &comparison.rules;
     let [interval, p, chance] = tests(comparison);
+    let events = format!(
+        "starts of any joints, each within {} s of the one before, count as one in interval and test",
+        comparison.rules.same_event_s
+    );
     vec![
         fact(
             "pairs",
@@ -222,13 +210,7 @@ fn how(comparison: &Comparison) -> Vec<Fact> {
              early is no change",
         ),
         fact("change", "after minus before, over each pair; negative is better"),
-        fact(
-            "events",
-            format!(
-                "starts of any joints, each within {} s of the one before, count as one in interval and test",
-                rules.same_event_s
-            ),
-        ),
+        fact("events", events),
         fact("95 %", interval),
         fact("p", p),
         fact("chance", chance),

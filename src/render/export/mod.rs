@@ -25,7 +25,6 @@ const MEASURED: &str = "#e69f00";
 const COMMAND: &str = "#009e73";
 const JOINTS: [&str; 7] = ["#e69f00", "#56b4e9", "#009e73", "#f0e442", "#648fff", "#d55e00", "#cc79a7"];
 
-/// Charts as a layout for Foxglove and Lichtblick.
 pub(crate) fn foxglove(charts: &Charts) -> Value {
     let mut panels = Panels::default();
     let mut left = Vec::new();
@@ -60,7 +59,6 @@ pub(crate) fn foxglove(charts: &Charts) -> Value {
     panels.finish(panel::row(nodes).as_ref())
 }
 
-/// What was written, and how it is opened.
 pub(crate) fn foxglove_written(file: &Path) -> String {
     format!(
         "{} written; open the log in Foxglove or Lichtblick, then import this as a layout.\n",
@@ -68,13 +66,11 @@ pub(crate) fn foxglove_written(file: &Path) -> String {
     )
 }
 
-/// The same of a blueprint.
 pub(crate) fn rerun_written(logs: &[PathBuf], file: &Path) -> String {
     let logs: Vec<String> = logs.iter().map(shell_argument).collect();
     format!("{} written; rerun {} {} opens both.\n", file.display(), logs.join(" "), shell_argument(file))
 }
 
-/// The worst start, close.
 fn worst(charts: &Charts, panels: &mut Panels) -> Option<Node> {
     let worst = charts.worst.as_ref()?;
     let of_joint =

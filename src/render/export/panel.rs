@@ -41,7 +41,6 @@ pub(super) fn plot(title: &str, unit: &str, paths: &[Value], window_s: Option<[f
     plot
 }
 
-/// A line of a plot, at stamps of a kind.
 pub(super) fn drawn(value: &str, by: &str, label: &str, color: &str) -> Value {
     json!({ "value": value, "enabled": true, "timestampMethod": by, "label": label, "color": color })
 }
@@ -67,7 +66,6 @@ pub(super) fn arm(descriptions: &[String]) -> Value {
     json!({ "foxglovePanelTitle": "Arm", "layers": layers })
 }
 
-/// Panels by id.
 #[derive(Debug, Default)]
 pub(super) struct Panels(BTreeMap<String, Value>);
 
@@ -86,7 +84,6 @@ impl Panels {
         (!tabs.is_empty()).then(|| self.add("Tab", id, json!({ "activeTabIdx": 0, "tabs": tabs })))
     }
 
-    /// A layout as Foxglove and Lichtblick import it.
     pub(super) fn finish(self, root: Option<&Node>) -> Value {
         let mut layout = json!({
             "configById": self.0, "globalVariables": {}, "userNodes": {}, "playbackConfig": { "speed": 1 },

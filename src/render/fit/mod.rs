@@ -15,13 +15,11 @@ use crate::{
     series::JointKind,
 };
 
-/// How a quantity is shown.
 pub(in crate::render) struct Shown {
     /// Above a column, without the unit.
     heading: &'static str,
     /// In a sentence.
     name: &'static str,
-    /// Of a joint.
     of: fn(&JointFit) -> Estimated,
     dimension: Dimension,
     /// Of degrees; of millimetres one less.

@@ -160,19 +160,15 @@ fn course(fitted: &Fitted, joint: &JointFit) -> Option<Chart> {
     let series = |name: &str, role, values: &[f64]| {
         Series::of(name, role, 0, at(values, &places).map(|rad| rounded(on_paper(joint.kind, rad))).collect())
     };
+    let both =
+        vec![series("predicted", Role::Planned, &predicted), series("measured", Role::Measured, &measured)];
+    let label = format!("Error ({})", unit(Dimension::Position, joint.kind));
     Some(Chart {
         title: format!("{} in {}", joint.name, fitted.runs[log].log),
         note: format!("R2 {:.2}", joint.held_out_r2),
         x_label: "Time (s)".into(),
         xs: vec![times(&t_s, &places)],
-        panels: vec![Panel::of(
-            format!("Error ({})", unit(Dimension::Position, joint.kind)),
-            1.0,
-            vec![
-                series("predicted", Role::Planned, &predicted),
-                series("measured", Role::Measured, &measured),
-            ],
-        )],
+        panels: vec![Panel::of(label, 1.0, both)],
         group: Some("run"),
         height: 260,
         size: Size::Half,

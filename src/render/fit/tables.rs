@@ -51,7 +51,6 @@ fn valve(joint: &JointFit, side: usize) -> Estimated {
     joint.valve_dead_band.map_or(Estimated::default(), |sides| sides[side])
 }
 
-/// A fit, for people.
 pub(crate) fn document(fitted: &Fitted) -> Document {
     let fit = &fitted.fit;
     let samples: usize = fit.joints.iter().map(|joint| joint.samples).sum();
@@ -73,7 +72,6 @@ pub(crate) fn document(fitted: &Fitted) -> Document {
     document.with(Section::new(Id::OTHER, "How far to trust it", trust(fitted))).remarked(&fitted.remarks)
 }
 
-/// The numbers of a fit with their intervals.
 pub(super) fn machine(fit: &Fit) -> Vec<Section> {
     let mut sections = vec![
         Section::new(Id::OTHER, "Closed loop", [table(fit, &LOOP, true)]).with(Sentence::note(
@@ -174,12 +172,8 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
     let all = || LOOP.iter().chain(&LIMITS);
     let open: Vec<String> = all()
         .filter_map(|shown| {
-            let joints: Vec<&str> = fit
-                .joints
-                .iter()
-                .filter(|joint| joint.model_holds && !(shown.of)(joint).identified)
-                .map(|joint| joint.name.as_str())
-                .collect();
+            let open = |joint: &&JointFit| joint.model_holds && !(shown.of)(joint).identified;
+            let joints: Vec<&str> = fit.joints.iter().filter(open).map(|joint| joint.name.as_str()).collect();
             let of =
                 if joints.len() == fit.joints.len() { "any joint".to_owned() } else { joints.join(", ") };
             (!joints.is_empty()).then(|| format!("{} of {of}", shown.name))

@@ -22,12 +22,8 @@ fn interval(unit: &str, [low, high]: [f64; 2]) -> String {
 
 /// The joints of a fleet, the worst first; `most`: rows that are shown.
 pub(crate) fn worst(worst: &Worst, most: usize) -> Document {
-    let of = format!(
-        "{} of {}: the {} by joint, the worst first.",
-        counted(worst.runs, "run"),
-        counted(worst.machines, "machine"),
-        name(worst.by)
-    );
+    let of = format!("{} of {}", counted(worst.runs, "run"), counted(worst.machines, "machine"));
+    let of = format!("{of}: the {} by joint, the worst first.", name(worst.by));
     let rows = worst.joints.iter().take(most).map(|joint| {
         let value = |value: f64| shown(&joint.unit, value);
         vec![
@@ -53,12 +49,10 @@ pub(crate) fn worst(worst: &Worst, most: usize) -> Document {
     Document::default().with(section.with(Sentence::note(note))).remarked(&worst.remarks)
 }
 
-/// That rows were left out.
 fn more(all: usize, most: usize) -> Option<Sentence> {
     (all > most).then(|| Sentence::note(format!("{} more; --all shows them.", all - most)))
 }
 
-/// The step, if it is what was found.
 pub(super) fn step_of(trend: &JointTrend) -> Option<&LevelStep> {
     trend.step.as_ref().filter(|_| trend.is_step)
 }
@@ -165,17 +159,11 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
 }
 
 fn not_judged(too_few: usize, fewest: usize) -> Option<Sentence> {
-    let few = || {
-        format!(
-            "{} with fewer than {} of one plan, not judged: fewer prove nothing among so many joints.",
-            counted(too_few, "trend"),
-            counted(fewest, "run")
-        )
-    };
-    (too_few > 0).then(|| Sentence::note(few()))
+    let (trends, runs) = (counted(too_few, "trend"), counted(fewest, "run"));
+    let why = "not judged: fewer prove nothing among so many joints";
+    (too_few > 0).then(|| Sentence::note(format!("{trends} with fewer than {runs} of one plan, {why}.")))
 }
 
-/// The q of what is found, or of the trend.
 pub(super) fn q(trend: &JointTrend) -> f64 {
     step_of(trend).map_or(trend.q_value, |step| step.q_value)
 }
@@ -206,16 +194,11 @@ fn trends<'a>(trends: impl Iterator<Item = &'a JointTrend>) -> Table {
     Table::new(&["machine", "joint", "metric", "unit"], &numbers, rows)
 }
 
-/// What a change did.
 pub(crate) fn effect(effect: &Effect, most: usize) -> Document {
     let what = effect.what.as_ref().map(|what| format!(", {what}")).unwrap_or_default();
-    let first = format!(
-        "{}{what}: {} before {}, {} after.",
-        effect.machine,
-        counted(effect.runs_before, "run"),
-        day(&effect.at),
-        effect.runs_after
-    );
+    let Effect { machine, runs_after, .. } = effect;
+    let (before, at) = (counted(effect.runs_before, "run"), day(&effect.at));
+    let first = format!("{machine}{what}: {before} before {at}, {runs_after} after.");
     let mut section = Section::plain(Id::SUMMARY, [Sentence::finding(first)]);
     section = section.with_all(effect.between.iter().map(|note| {
         let (when, more) =
@@ -223,21 +206,15 @@ pub(crate) fn effect(effect: &Effect, most: usize) -> Document {
         Sentence::note(format!("Runs {when} {} ({}) are left out{more}.", day(&note.at), note.what))
     }));
     section = section.with_all(effect.together.iter().map(|note| {
+        let other = format!("{} ({})", day(&note.at), note.what);
         Sentence::note(format!(
-            "Fewer than three runs lie between it and {} ({}): the effect is that of both.",
-            day(&note.at),
-            note.what
+            "Fewer than three runs lie between it and {other}: the effect is that of both."
         ))
     }));
     let found: Vec<&JointEffect> = effect.effects.iter().filter(|effect| effect.found).collect();
-    if found.is_empty() {
-        let none = if effect.effects.is_empty() {
-            "Nothing to judge: no joint has three runs of one plan before and after."
-        } else {
-            "No effect found."
-        };
-        section = section.with(Sentence::finding(none));
-    }
+    let nothing = "Nothing to judge: no joint has three runs of one plan before and after.";
+    let none = if effect.effects.is_empty() { nothing } else { "No effect found." };
+    section = section.with_all(found.is_empty().then(|| Sentence::finding(none)));
     section = section.with_all(found.into_iter().take(most).map(|one| {
         let became = if one.change > 0.0 { "larger" } else { "smaller" };
         let unit = shown_unit(&one.unit);
@@ -246,13 +223,11 @@ pub(crate) fn effect(effect: &Effect, most: usize) -> Document {
             Some(_) => "less what other joints of other machines did".to_owned(),
             None => "no season is taken off, for fewer than three other machines tell it".to_owned(),
         };
-        let since = one.since.as_deref().map(|since| format!("since {}", day(since)));
-        let until = one.until.as_deref().map(|until| format!("until {}", day(until)));
-        let part: Vec<String> = since.into_iter().chain(until).collect();
-        let part = if part.is_empty() {
-            String::new()
-        } else {
-            format!("; of runs {}, for its level changed by itself beyond", part.join(" and "))
+        let ends = [("since", &one.since), ("until", &one.until)];
+        let ends = ends.into_iter().filter_map(|(word, at)| Some(format!("{word} {}", day(at.as_deref()?))));
+        let part = match ends.collect::<Vec<_>>().join(" and ") {
+            none if none.is_empty() => none,
+            ends => format!("; of runs {ends}, for its level changed by itself beyond"),
         };
         let drift = one.drift_per_day.map_or(String::new(), |drift| {
             format!("; beside {} {unit} a day, before as after", shown_rate(&one.unit, drift))
@@ -306,14 +281,12 @@ fn effects<'a>(effects: impl Iterator<Item = &'a JointEffect>) -> Table {
     Table::new(&["joint", "metric", "unit"], &numbers, rows)
 }
 
-/// The limits, each with what was found.
 pub(crate) fn gate(gated: &Gated) -> Document {
     let section = Section::plain(Id::SUMMARY, gate_verdicts(gated))
         .with_all(not_judged(gated.too_few, gated.fewest_runs));
     Document::default().with(section).remarked(&gated.remarks)
 }
 
-/// The limits as verdicts.
 pub(crate) fn gate_verdicts(gated: &Gated) -> Vec<Sentence> {
     gated.gates.iter().map(|gate| verdict(gate, gated.fewest_runs)).collect()
 }
@@ -333,23 +306,18 @@ fn verdict(gate: &GateResult, fewest_runs: usize) -> Sentence {
         Some(worst) => {
             let grows = match step_of(worst) {
                 // A limit is on what a day brings.
-                Some(step) => format!(
-                    "{} {unit} a day: {}",
-                    shown_change(&worst.unit, worst.growth_per_day()),
-                    stepped(worst, step)
-                ),
+                Some(step) => {
+                    let growth = shown_change(&worst.unit, worst.growth_per_day());
+                    format!("{growth} {unit} a day: {}", stepped(worst, step))
+                }
                 None => format!("{} {unit} a day", shown_rate(&worst.unit, worst.slope_per_day)),
             };
             let sure = if worst.found { "found" } else { "not proven" };
             let above = worst.growth_per_day() > gate.most_per_day;
             let start =
                 if above && !worst.found { "no growth above it is proven; the largest is " } else { "" };
-            let trend = format!(
-                "{start}{grows} at {} {} ({sure}, q = {})",
-                worst.machine,
-                worst.joint_and_direction(),
-                probability(q(worst))
-            );
+            let (machine, joint, q) = (&worst.machine, worst.joint_and_direction(), probability(q(worst)));
+            let trend = format!("{start}{grows} at {machine} {joint} ({sure}, q = {q})");
             let shared = gate.shared_per_day.map(|shared| (shared, shown_rate(&worst.unit, shared)));
             let trend = match shared {
                 Some((growth, shown)) if growth > gate.most_per_day => {

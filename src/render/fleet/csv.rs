@@ -14,7 +14,6 @@ fn key(by: crate::workflow::fleet::By) -> String {
     super::name(by).replace(' ', "_")
 }
 
-/// The joints of a fleet.
 pub(crate) fn worst_csv(worst: &Worst) -> String {
     let headings = [
         "machine", "joint", "metric", "unit", "median", "p95", "largest", "above_fleet", "starts", "runs",
@@ -39,7 +38,6 @@ pub(crate) fn worst_csv(worst: &Worst) -> String {
     csv(headings, rows)
 }
 
-/// The trends of a fleet.
 pub(crate) fn drift_csv(drift: &Drift) -> String {
     let headings = [
         "machine", "joint", "metric", "unit", "slope_per_day", "slope_low", "slope_high", "p_value",
@@ -78,7 +76,6 @@ pub(crate) fn drift_csv(drift: &Drift) -> String {
     csv(headings, rows)
 }
 
-/// What a change did.
 pub(crate) fn effect_csv(effect: &Effect) -> String {
     let headings = [
         "machine", "at", "joint", "metric", "unit", "before", "change", "change_low", "change_high",

@@ -28,10 +28,8 @@ pub(crate) fn progress(now: &Progress) -> String {
     format!("{done} of {}{failed}", counted(of, "log"))
 }
 
-/// Failed logs that are listed.
 const MOST_FAILED: usize = 10;
 
-/// What a scan did.
 pub(crate) fn scanned(scanned: &Scanned) -> Document {
     let Scanned { logs, unchanged, analysed, replaced, transitions, failures, .. } = scanned;
     let again = if *replaced > 0 { format!(", {replaced} of them again") } else { String::new() };
@@ -80,12 +78,8 @@ pub(crate) fn notes(notes: &Notes, made: Option<&Intervention>, dataset: &Path) 
     };
     let at = |one: &Intervention| one.at.strip_suffix("T00:00:00Z").unwrap_or(&one.at).to_owned();
     let rows = notes.interventions.iter().map(|one| {
-        vec![
-            at(one),
-            one.machine.clone(),
-            one.joint.clone().unwrap_or_else(|| NONE.to_owned()),
-            one.what.clone(),
-        ]
+        let joint = one.joint.clone().unwrap_or_else(|| NONE.to_owned());
+        vec![at(one), one.machine.clone(), joint, one.what.clone()]
     });
     let table = Table::new(&["at", "machine", "joint", "what"], &[], rows);
     let (machine, at) = (format!("--machine={}", word(&asked.machine)), format!("--at={}", at(asked)));
@@ -99,21 +93,15 @@ pub(crate) fn notes(notes: &Notes, made: Option<&Intervention>, dataset: &Path) 
     Document::default().with(section)
 }
 
-/// What was joined.
 pub(crate) fn compacted(done: &Compacted) -> Document {
     let Compacted { runs, files_before, files_after, .. } = *done;
-    let found = match files_before - files_after.min(files_before) {
-        0 => format!("{} in {}: nothing to join.", counted(runs, "run"), counted(files_after, "file")),
-        _ => format!(
-            "{} in {} now, {files_before} before.",
-            counted(runs, "run"),
-            counted(files_after, "file")
-        ),
-    };
+    let now = format!("{} in {}", counted(runs, "run"), counted(files_after, "file"));
+    let joined = files_before > files_after;
+    let found =
+        if joined { format!("{now} now, {files_before} before.") } else { now + ": nothing to join." };
     Document::default().with(Section::plain(Id::SUMMARY, [Sentence::finding(found)]))
 }
 
-/// What a metric is called.
 fn name(by: By) -> &'static str {
     match by {
         By::Peak => "peak error",
@@ -163,7 +151,6 @@ fn shown_rate(unit: &str, value: f64) -> String {
     super::kit::signed(value, |_| format!("{:.decimals$}", size.copysign(value)))
 }
 
-/// The day of an instant.
 fn day(at: &str) -> &str {
     at.split('T').next().unwrap_or(at)
 }

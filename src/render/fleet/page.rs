@@ -16,9 +16,7 @@ use crate::{
     workflow::fleet::{Drift, Effect, JointTrend, Map, MapCell, Worst},
 };
 
-/// Trends that are drawn.
 const MOST_DRAWN: usize = 24;
-/// Rows of tables.
 const MOST_ROWS: usize = 200;
 
 /// What changes, where and since when.
@@ -43,19 +41,17 @@ pub(crate) fn drift_page(drift: &Drift) -> String {
     };
     let mut chapters = vec![Chapter { id: "summary", heading: "In short", body: summary }];
     chapters.extend(days(&drift.maps));
-    let drawn = found
-        .iter()
-        .take(MOST_DRAWN)
-        .map(|trend| html! { div { (plots.place(chart(trend))) (pages(trend)) } });
-    let drawn: Vec<Markup> = drawn.collect();
-    let drawn = html! { div class="side" { @for figure in &drawn { (figure) } } };
+    let drawn = html! {
+        div class="side" {
+            @for trend in found.iter().take(MOST_DRAWN) { div { (plots.place(chart(trend))) (pages(trend)) } }
+        }
+    };
     if !found.is_empty() {
         chapters.push(Chapter { id: "trends", heading: "What changes", body: drawn });
     }
     ends("drift", &document, chapters, &plots)
 }
 
-/// Which joints are worst.
 pub(crate) fn worst_page(worst: &Worst) -> String {
     let document =
         answers::worst(worst, MOST_ROWS).titled_as(&format!("Largest {} of the fleet", name(worst.by)));
@@ -74,27 +70,21 @@ pub(crate) fn worst_page(worst: &Worst) -> String {
     ends("worst", &document, chapters, &Plots::default())
 }
 
-/// What a repair did.
 pub(crate) fn effect_page(effect: &Effect) -> String {
-    let document = answers::effect(effect, MOST_ROWS).titled_as(&format!(
-        "{}: what changed on {}",
-        effect.machine,
-        day(&effect.at)
-    ));
+    let title = format!("{}: what changed on {}", effect.machine, day(&effect.at));
+    let document = answers::effect(effect, MOST_ROWS).titled_as(&title);
     let units: std::collections::BTreeSet<&str> =
         effect.effects.iter().map(|one| one.unit.as_str()).collect();
     let rows = |unit: &str| -> Vec<Row> {
+        let text = |change: f64, q: f64| {
+            format!("{} {} (q = {})", shown_change(unit, change), shown_unit(unit), probability(q))
+        };
         let own = effect.effects.iter().filter(|one| one.unit == unit);
         own.map(|one| Row {
             name: format!("{}, {}", one.joint, name(one.metric)),
             value: one.change,
             interval: Some(one.interval_95),
-            text: format!(
-                "{} {} (q = {})",
-                shown_change(unit, one.change),
-                shown_unit(unit),
-                probability(one.q_value)
-            ),
+            text: text(one.change, one.q_value),
             strong: one.found,
         })
         .collect()
@@ -148,24 +138,16 @@ const LEVELS: [(&str, &str); 6] = [
 const BOUNDS: [f64; 5] = [-0.1, 0.1, 0.25, 0.5, 1.0];
 
 fn heat(map: &Map) -> Markup {
-    let heading = format!(
-        "{} in % against the fleet, {}",
-        name(map.metric),
-        match map.days_a_column {
-            1 => "by day".to_owned(),
-            days => format!("{days} days a column"),
-        }
-    );
+    let days = match map.days_a_column {
+        1 => "by day".to_owned(),
+        days => format!("{days} days a column"),
+    };
+    let heading = format!("{} in % against the fleet, {days}", name(map.metric));
     let cell = |machine: &str, at: &str, cell: &MapCell| {
         let class = LEVELS[BOUNDS.iter().filter(|bound| cell.above_fleet > **bound).count()].0;
-        let title = format!(
-            "{machine} {}, {}: {} % against the fleet, {}",
-            cell.joint,
-            day(at),
-            percent(cell.above_fleet),
-            counted(cell.starts, "start")
-        );
-        html! { td class=(class) title=(clean(&title)) { (percent(cell.above_fleet)) } }
+        let (day, above, starts) = (day(at), percent(cell.above_fleet), counted(cell.starts, "start"));
+        let title = format!("{machine} {}, {day}: {above} % against the fleet, {starts}", cell.joint);
+        html! { td class=(class) title=(clean(&title)) { (above) } }
     };
     html! {
         h3 { (heading) }
@@ -214,7 +196,6 @@ fn encoded(path: &str) -> String {
     path.bytes().map(letter).collect()
 }
 
-/// The levels of a trend over the days since its first run.
 fn chart(trend: &JointTrend) -> Chart {
     let unit = &trend.unit;
     let scale = match shown_unit(unit) {
@@ -233,11 +214,8 @@ fn chart(trend: &JointTrend) -> Chart {
         let mean = |side: &[f64]| rounded(side.iter().sum::<f64>() / side.len() as f64);
         let (last, first) = (*xs.get(step.runs_before.checked_sub(1)?)?, *xs.get(step.runs_before)?);
         let (before, after) = (mean(before), mean(after));
-        Some((
-            vec![ends[0], last, first, ends[1]],
-            vec![before, before, after, after],
-            answers::stepped(trend, step),
-        ))
+        let (at, line) = (vec![ends[0], last, first, ends[1]], vec![before, before, after, after]);
+        Some((at, line, answers::stepped(trend, step)))
     });
     let course = || {
         let at = trend.line.iter().map(|[at, _]| rounded(at - first)).collect();
@@ -268,20 +246,15 @@ fn chart(trend: &JointTrend) -> Chart {
         },
         |(at, line, what)| ("level", at, line, what),
     );
+    let runs = Series::of("run", Role::Point, 0, y).named(names.collect());
+    let series = vec![Series::of(guide, Role::Guide, 1, line), runs];
     Chart {
         title: format!("{} {}: {}", trend.machine, trend.joint_and_direction(), name(trend.metric)),
         note: format!("{what}, q = {}", probability(answers::q(trend))),
         x_label: "days since the first run".into(),
         x_range: Some([ends[0] - room, ends[1] + room]),
         xs: vec![xs, at],
-        panels: vec![Panel::of(
-            format!("{} {}", name(trend.metric), shown_unit(unit)),
-            1.0,
-            vec![
-                Series::of(guide, Role::Guide, 1, line),
-                Series::of("run", Role::Point, 0, y).named(names.collect()),
-            ],
-        )],
+        panels: vec![Panel::of(format!("{} {}", name(trend.metric), shown_unit(unit)), 1.0, series)],
         height: 190,
         size: Size::Half,
         ..Chart::default()

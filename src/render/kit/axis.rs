@@ -10,7 +10,6 @@ use plotters::{
     prelude::RGBColor,
 };
 
-/// Text and axes.
 pub(in crate::render) const INK: RGBColor = RGBColor(51, 51, 51);
 pub(super) const GRID: RGBColor = RGBColor(225, 225, 225);
 pub(super) const FONT: &str = "sans-serif";

@@ -32,7 +32,6 @@ impl Mark {
         }
     }
 
-    /// Its class on a page.
     pub(in crate::render) fn class(self) -> &'static str {
         match self {
             Self::Good => "good",

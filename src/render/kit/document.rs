@@ -213,7 +213,6 @@ impl Sentence {
         matches!(self, Self::Verdict { kept: false, .. })
     }
 
-    /// How a verdict is worded.
     pub(super) fn verdict(kept: bool) -> &'static str {
         if kept { "kept" } else { "NOT KEPT" }
     }

@@ -22,7 +22,6 @@ pub(in crate::render) fn numbered(kind: &str, charts: &[(String, Chart)]) -> Res
     charts.iter().enumerate().map(own).collect()
 }
 
-/// A chart in a file of this name.
 pub(in crate::render) fn figure(name: &str, chart: &Chart) -> Result<Figure, Failure> {
     Ok(Figure { name: name.to_owned(), svg: svg(chart, Paper::FIGURE)? })
 }

@@ -4,7 +4,6 @@ use textwrap::core::display_width;
 
 use super::{Align, Table};
 
-/// Between two columns of a table.
 pub(super) const GAP: &str = "  ";
 
 /// Characters that each column takes.

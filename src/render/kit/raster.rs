@@ -9,13 +9,10 @@ use resvg::{
     usvg::{Group, Node, Options, Transform, Tree, fontdb::Database},
 };
 
-/// Dots per inch and per metre.
 const INCHES_M: f64 = 1.0 / 0.0254;
 
-/// A figure in pixels.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Raster {
-    /// A PNG file.
     pub(crate) png: Vec<u8>,
     /// What the font lacks, and is drawn as a box.
     pub(crate) lacking: BTreeSet<String>,
@@ -24,10 +21,6 @@ pub(crate) struct Raster {
 /// An SVG document of a size on paper as a PNG file of so many dots per inch, on white.
 ///
 /// Text is set in a font that is part of the program: the result depends on no machine.
-///
-/// # Errors
-///
-/// What the libraries say: a document that is none, a size that no memory holds.
 pub(crate) fn raster(
     svg: &str,
     dots_per_inch: u32,

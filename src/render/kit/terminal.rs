@@ -12,7 +12,6 @@ pub fn text(document: &Document) -> String {
     shown(document, TerminalStyle::default())
 }
 
-/// For a terminal.
 pub(crate) fn shown(document: &Document, style: TerminalStyle) -> String {
     let mut out = String::new();
     if let Some(title) = &document.title {

@@ -37,12 +37,10 @@ impl TerminalStyle {
         self.paint(text, STRONG)
     }
 
-    /// A remark.
     pub(super) fn doubt(self, text: &str) -> String {
         self.paint(text, DOUBT)
     }
 
-    /// Whether a limit is kept.
     pub(super) fn verdict(self, kept: bool) -> String {
         self.paint(Sentence::verdict(kept), if kept { GOOD } else { BAD })
     }

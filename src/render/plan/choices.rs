@@ -18,9 +18,7 @@ pub(crate) struct Courses<'a> {
     pub(crate) chosen: &'a Course,
     /// Those of plans of the front, with their places in it.
     pub(crate) of_front: &'a [(usize, Course)],
-    /// The tool's link.
     pub(crate) tool: &'a str,
-    /// The task's ceilings.
     pub(crate) ceilings: &'a Ceilings,
     /// Whether the machines that `simulate` knows by name have its joints.
     pub(crate) of_sample_arm: bool,

@@ -10,26 +10,16 @@ use crate::{
 };
 
 /// The plots of a search and of the motion it chose.
-///
-/// # Errors
-///
-/// What the drawing library says.
 pub(crate) fn figures(plan: &PlanDocument, course: &Course) -> Result<Vec<Figure>, Failure> {
     let mut figures = front_figures(plan)?;
     figures.extend(motion_figures(&plan.joints, course)?);
     Ok(figures)
 }
 
-/// The plots of one motion.
-///
-/// # Errors
-///
-/// What the drawing library says.
 pub(crate) fn motion_figures(joints: &[String], course: &Course) -> Result<Vec<Figure>, Failure> {
     numbered("motion", &motion_charts(joints, course))
 }
 
-/// The plots of a front.
 pub(in crate::render) fn front_figures(front: &PlanDocument) -> Result<Vec<Figure>, Failure> {
     front_charts(front).into_iter().map(|(name, chart)| figure(&name, &chart)).collect()
 }

@@ -64,20 +64,15 @@ fn projection(front: &PlanDocument, across: Objective, up: Objective) -> Chart {
     let xs = vec![of(&mut all(), across), of(&mut few(), across)];
     let [low, high] = span(xs.iter().flatten().copied());
     let room = 0.05 * (high - low);
+    let best = Series::of("best and chosen", Role::Named, 1, of(&mut few(), up));
+    let best = best.named(named.iter().map(|(name, _)| name.clone()).collect());
+    let series = vec![Series::of("plan", Role::Point, 0, of(&mut all(), up)), best];
     Chart {
         title,
         x_label: across.row().axis.into(),
         xs,
         x_range: Some([low - room, high + 2.0 * room]),
-        panels: vec![Panel::of(
-            up.row().axis.to_owned(),
-            1.0,
-            vec![
-                Series::of("plan", Role::Point, 0, of(&mut all(), up)),
-                Series::of("best and chosen", Role::Named, 1, of(&mut few(), up))
-                    .named(named.iter().map(|(name, _)| name.clone()).collect()),
-            ],
-        )],
+        panels: vec![Panel::of(up.row().axis, 1.0, series)],
         height: 300,
         size: Size::Half,
         ..Chart::default()
@@ -86,20 +81,13 @@ fn projection(front: &PlanDocument, across: Objective, up: Objective) -> Chart {
 
 fn convergence(front: &PlanDocument) -> Chart {
     let steps = &front.convergence;
+    let y = steps.iter().map(|step| (step.hypervolume * 1e5).round() / 1e5).collect();
+    let series = vec![Series::of("share of the final front's box", Role::Measured, 0, y)];
     Chart {
         title: "How the front grew".to_owned(),
         x_label: "Evaluations".into(),
         xs: vec![steps.iter().map(|step| step.evaluations as f64).collect()],
-        panels: vec![Panel::of(
-            "Hypervolume".to_owned(),
-            1.0,
-            vec![Series::of(
-                "share of the final front's box",
-                Role::Measured,
-                0,
-                steps.iter().map(|step| (step.hypervolume * 1e5).round() / 1e5).collect(),
-            )],
-        )],
+        panels: vec![Panel::of("Hypervolume", 1.0, series)],
         height: 300,
         size: Size::Half,
         ..Chart::default()

@@ -19,7 +19,6 @@ const NEAR: f64 = 0.6;
 /// Beside a motion, as a share of its duration: the last key point and its number.
 const ROOM: f64 = 0.03;
 
-/// Joints with their angles and speeds.
 pub(super) fn motion_charts(joints: &[String], course: &Course) -> Vec<(String, Chart)> {
     let chart = |(k, joint): (usize, &String)| (joint.clone(), joint_chart(joint, k, course));
     joints.iter().enumerate().map(chart).collect()

@@ -19,7 +19,6 @@ use crate::{
     workflow::plan::{Course, Options, PlanDocument, Planned},
 };
 
-/// What a search found, as one page.
 pub(crate) fn page(
     plan: &PlanDocument,
     options: &Options,
@@ -34,18 +33,14 @@ pub(crate) fn page(
     let mut chapters = vec![
         Chapter { id: "summary", heading: "In short", body: summary(planned, courses.of_sample_arm) },
         Chapter { id: "front", heading: "The front", body: the_front(plan, planned, courses, &mut plots) },
-        Chapter::new(
-            "motion",
-            "The motion that is shown",
-            motion(&planned.joints, courses.chosen, courses.tool, &mut plots),
-        ),
-        numbers(&document),
     ];
+    let shown = motion(&planned.joints, courses.chosen, courses.tool, &mut plots);
+    chapters.push(Chapter { id: "motion", heading: "The motion that is shown", body: shown });
+    chapters.push(numbers(&document));
     chapters.extend(Chapter::of(document.section(Id::REMARKS), "Remarks on the data"));
     kit::page::page("plan", &document, &chapters, &plots)
 }
 
-/// One plan that was given, as one page.
 pub(crate) fn judged_page(
     title: &str,
     joints: &[String],
@@ -56,12 +51,9 @@ pub(crate) fn judged_page(
     let mut document = judged_document(title, joints, evaluation, above);
     document.facts = vec![fact("joints", joints.join(", "))];
     let mut plots = Plots::default();
+    let cards = html! { div class="cards" { (limits(evaluation, joints)) (cost("The plan", evaluation)) } };
     let chapters = [
-        Chapter::new(
-            "summary",
-            "In short",
-            html! { div class="cards" { (limits(evaluation, joints)) (cost("The plan", evaluation)) } },
-        ),
+        Chapter { id: "summary", heading: "In short", body: cards },
         Chapter { id: "motion", heading: "The motion", body: motion(joints, course, tool, &mut plots) },
         numbers(&document),
     ];
@@ -87,13 +79,9 @@ fn numbers(document: &Document) -> Chapter {
 }
 
 fn facts(joints: &[String], algorithm: &str, options: &Options, planned: &Planned) -> Vec<Fact> {
-    vec![
-        fact("joints", joints.join(", ")),
-        fact(
-            "search",
-            format!("{algorithm}, seed {}, {} evaluations", options.search.seed, planned.evaluations),
-        ),
-    ]
+    let seed = options.search.seed;
+    let search = format!("{algorithm}, seed {seed}, {} evaluations", planned.evaluations);
+    vec![fact("joints", joints.join(", ")), fact("search", search)]
 }
 
 fn summary(planned: &Planned, of_sample_arm: bool) -> Markup {

@@ -15,7 +15,6 @@ use crate::{
     },
 };
 
-/// The section of a document.
 pub(super) const ID: Id = Id("checks");
 
 /// The verdict and every check; `units` says how means over the joints are told.
@@ -32,7 +31,6 @@ pub(super) fn list(checks: &Checks, units: Units) -> Block {
     Block::Checks(checks.list.iter().map(one).collect())
 }
 
-/// One sentence that answers the question.
 pub(super) fn verdict(checks: &Checks) -> String {
     let why = |level: Level| {
         checks.at(level).map(|check| short(level, &check.finding)).collect::<Vec<_>>().join("; ")

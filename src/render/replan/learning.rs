@@ -170,7 +170,6 @@ fn distrust(replanned: &Replanned) -> Option<String> {
     })
 }
 
-/// The command joint by joint.
 pub(super) fn command(replanned: &Replanned) -> Option<Section> {
     let command = replanned.command.as_ref()?;
     let units = Units::of(command.joints.iter().map(|joint| joint.kind));

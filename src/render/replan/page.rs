@@ -42,7 +42,6 @@ fn answer(replanned: &Replanned, sending: &Section) -> Markup {
     }
 }
 
-/// A plot for each joint.
 fn drawn(replanned: &Replanned, plots: &mut Plots) -> Markup {
     html! {
         p class="hint" {

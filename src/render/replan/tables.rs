@@ -19,10 +19,8 @@ use crate::{
 /// Predicted transitions of joints of a kind.
 type PeaksOf<'a> = &'a mut dyn Iterator<Item = &'a PredictedTransition>;
 
-/// The section of what is expected.
 pub(super) const EXPECTED: Id = Id("expected");
 
-/// A plan for the next run, for people.
 pub(crate) fn document(replanned: &Replanned) -> Document {
     let title = replanned.request.as_ref().map_or("the logged plan", |request| request.task.title.as_str());
     let learnt = format!("The machine was fitted to {}.", replanned.fitted_to.join(", "));

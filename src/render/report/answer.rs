@@ -80,7 +80,6 @@ fn worst(report: &Report) -> Fact {
     )
 }
 
-/// What makes the worst start late.
 fn why(report: &Report) -> Option<Fact> {
     if let Err(reason) = report.why.as_ref()? {
         return Some(fact("why", format!("not told: {reason}")));

@@ -20,11 +20,6 @@ use crate::{
     workflow::report::{Report, Tool},
 };
 
-/// The plots of a report.
-///
-/// # Errors
-///
-/// What the drawing library says.
 pub(crate) fn figures(report: &Report) -> Result<Vec<Figure>, Failure> {
     const COLUMNS: usize = 3;
     /// What a page of paper holds.

@@ -148,11 +148,8 @@ pub(super) fn worst_start(report: &Report) -> Option<Chart> {
     let latest_s = worst.onset_delay_s.unwrap_or(0.0).max(worst.time_to_peak_s);
     let after_s = (latest_s + 0.4).clamp(AFTER_S[0], AFTER_S[1]);
     let mut chart = tile(worst, pair, [BEFORE_S, after_s]);
-    let seen = View {
-        zero_s: worst.planned_onset_s,
-        shown_s: [-BEFORE_S, after_s],
-        sign: f64::from(worst.direction),
-    };
+    let (zero_s, sign) = (worst.planned_onset_s, f64::from(worst.direction));
+    let seen = View { zero_s, shown_s: [-BEFORE_S, after_s], sign };
     let speed = speed(&mut chart, report, pair, seen, 0.4)?;
     chart.panels.insert(1, speed);
     let of = if report.fault.is_some() { " of the others" } else { "" };

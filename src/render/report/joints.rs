@@ -22,14 +22,13 @@ use crate::{
         },
         metric::{on_paper, position, unit},
     },
-    replay::{Dimension, Replay, Transition},
+    replay::{Dimension, JointReplay, Replay, Transition},
     series::Pair,
     workflow::report::Report,
 };
 
 /// Places of a series at most, nearly.
 const MOST: usize = 3000;
-/// A plot for each joint.
 pub(super) fn joints(report: &Report, plots: &mut Plots) -> Markup {
     let mut charts = joint_charts(report);
     for ((_, chart), pair) in charts.iter_mut().zip(&report.pairs) {
@@ -49,7 +48,6 @@ pub(super) fn joints(report: &Report, plots: &mut Plots) -> Markup {
     }
 }
 
-/// Joints with their plots, in the order of the report.
 pub(super) fn joint_charts(report: &Report) -> Vec<(String, Chart)> {
     let mut of: BTreeMap<&str, Vec<&Transition>> = BTreeMap::new();
     for transition in &report.replay.transitions {
@@ -77,6 +75,8 @@ fn joint_chart(pair: &Pair, replay: &Replay, transitions: &[&Transition]) -> Cha
         format!("rms {}, peak {}{late}", position(pair.kind, error.rms), position(pair.kind, error.peak))
     });
     let note = note + &left_out(places.iter().flatten().count(), pair.t_s.len());
+    let planned = series("planned", Role::Planned, shown(&pair.planned));
+    let both = vec![planned, series("measured", Role::Measured, shown(&pair.measured))];
     Chart {
         title: pair.name.clone(),
         note,
@@ -84,14 +84,7 @@ fn joint_chart(pair: &Pair, replay: &Replay, transitions: &[&Transition]) -> Cha
         xs: vec![times(&pair.t_s, &places)],
         x_range: None,
         panels: vec![
-            Panel::of(
-                format!("Position ({unit})"),
-                0.6,
-                vec![
-                    series("planned", Role::Planned, shown(&pair.planned)),
-                    series("measured", Role::Measured, shown(&pair.measured)),
-                ],
-            ),
+            Panel::of(format!("Position ({unit})"), 0.6, both),
             Panel::of(format!("Error ({unit})"), 0.4, vec![series("error", Role::Error, shown(&error))]),
         ],
         bands: transitions.iter().flat_map(|transition| bands(transition)).collect(),
@@ -104,11 +97,8 @@ fn joint_chart(pair: &Pair, replay: &Replay, transitions: &[&Transition]) -> Cha
 /// What a plot that leaves samples out says of them.
 fn left_out(drawn: usize, all: usize) -> String {
     let of = all as f64 / drawn.max(1) as f64;
-    if drawn < all {
-        format!("; 1 of {of:.1} samples drawn, most at the worst starts")
-    } else {
-        String::new()
-    }
+    let said = || format!("; 1 of {of:.1} samples drawn, most at the worst starts");
+    if drawn < all { said() } else { String::new() }
 }
 
 /// The window of a transition, and in it the time until the joint answers.
@@ -121,23 +111,13 @@ fn bands(transition: &Transition) -> Vec<Band> {
 
 /// Joints with their lags, s.
 pub(super) fn lag_rows(report: &Report) -> Vec<Row> {
-    report
-        .replay
-        .joints
-        .iter()
-        .filter_map(|joint| {
-            Some(Row {
-                name: joint.name.clone(),
-                value: joint.lag_s?,
-                interval: joint.lag_interval_s,
-                text: format!("{} ms", lag(joint)),
-                strong: false,
-            })
-        })
-        .collect()
+    let row = |joint: &JointReplay| {
+        let (name, text) = (joint.name.clone(), format!("{} ms", lag(joint)));
+        Some(Row { name, value: joint.lag_s?, interval: joint.lag_interval_s, text, strong: false })
+    };
+    report.replay.joints.iter().filter_map(row).collect()
 }
 
-/// The lag of each joint with its interval.
 pub(super) fn lags(report: &Report) -> Markup {
     let rows = lag_rows(report);
     html! {

@@ -82,13 +82,11 @@ fn numbers(document: &Document, report: &Report) -> Markup {
     }
 }
 
-/// What the rows of transitions show.
 fn transitions_shown(report: &Report) -> Vec<Shows> {
     let of = |transition: &Transition| Shows::around(&transition.joint, transition.window_s);
     report.replay.worst_first().into_iter().map(of).collect()
 }
 
-/// What the rows of late starts show.
 fn late_starts(report: &Report) -> Vec<Shows> {
     let Some(Ok(why)) = &report.why else { return Vec::new() };
     let window = |start: &LateStart| [start.planned_onset_s, start.planned_onset_s + start.onset_delay_s];

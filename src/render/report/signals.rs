@@ -123,12 +123,8 @@ fn signals(
         let Some(signal) = all.iter().find(|signal| signal.name() == pair.name) else { continue };
         let places = envelope(signal.segments(), &[signal.values()], MOST);
         let x = coordinates(chart, signal.t_s(), &places);
-        found.push(series(
-            name,
-            *look,
-            x,
-            at(signal.values(), &places).map(|value| hundredths(scale * value)),
-        ));
+        let values = at(signal.values(), &places).map(|value| hundredths(scale * value));
+        found.push(series(name, *look, x, values));
     }
     found
 }

@@ -49,7 +49,6 @@ fn lines(step: &Advice, report: &Report, limit: [&str; 2], learns: bool) -> Vec<
     joined.into_iter().chain([line]).collect()
 }
 
-/// The files of a run, as arguments.
 pub(super) fn named(report: &Report) -> String {
     report.paths.iter().map(argument).collect::<Vec<_>>().join(" ")
 }

@@ -109,12 +109,9 @@ fn place_of_error(all: &Together) -> Markup {
 /// Root mean square errors inside and outside.
 pub(super) fn concentration_bars(all: &Together) -> Markup {
     let (Some(c), kind) = (&all.run.concentration, all.kind) else { return html! {} };
-    let row = |name: &str, error: f64, strong| Row {
-        name: name.to_owned(),
-        value: on_paper(kind, error),
-        interval: None,
-        text: position(kind, error),
-        strong,
+    let row = |name: &str, error: f64, strong| {
+        let (value, text) = (on_paper(kind, error), position(kind, error));
+        Row { name: name.to_owned(), value, interval: None, text, strong }
     };
     let mut rows = vec![row("inside", c.rms_inside, true), row("elsewhere", c.rms_outside, false)];
     rows.extend(c.rms_outside_moving.map(|error| row("elsewhere, moving", error, false)));

@@ -55,15 +55,9 @@ fn source_facts(report: &Report) -> Vec<Fact> {
     let taken_off = source.measured_delay_s.map_or(String::new(), |delay_s| {
         format!("; {} ms taken off those of the measurement, as given", ms(delay_s))
     });
+    let (duration_s, joints) = (source.duration_s, counted(report.alignment.len(), "joint"));
     vec![
-        fact(
-            "run",
-            format!(
-                "{:.2} s, {}, {samples} samples{rate}",
-                source.duration_s,
-                counted(report.alignment.len(), "joint")
-            ),
-        ),
+        fact("run", format!("{duration_s:.2} s, {joints}, {samples} samples{rate}")),
         fact("planned", planned(source, "  ")),
         fact("measured", measured(source, "  ")),
         fact("clock", format!("{}{delay}{taken_off}", clock(source))),
@@ -92,11 +86,8 @@ fn findings(report: &Report) -> Vec<String> {
         None => lines.push("No planned start from rest was found.".to_owned()),
     }
     lines.extend(replay.joints.iter().filter_map(|joint| unanswered(replay, joint)));
-    lines.extend(
-        report
-            .promised
-            .and_then(|held| promise::sentence(&held, replay.joints.iter().map(|joint| joint.kind), "")),
-    );
+    let kinds = replay.joints.iter().map(|joint| joint.kind);
+    lines.extend(report.promised.and_then(|held| promise::sentence(&held, kinds, "")));
     lines.extend(Together::all(replay).iter().flat_map(Together::findings));
     lines.extend(replay.joints.iter().filter_map(|joint| stray(report, joint)));
     lines.extend(replay.joints.iter().filter_map(|joint| one_way(replay, joint)));
@@ -203,9 +194,8 @@ fn transitions(replay: &Replay, most: usize) -> Option<Section> {
 fn joints(replay: &Replay, profiles: &Profiles) -> Section {
     let units = Units::of(replay.joints.iter().map(|joint| joint.kind));
     let mut table = units.table(JOINT, replay.joints.iter().map(|joint| (joint, joint.kind)));
-    table
-        .columns
-        .insert(1, Column::words("error over the run").meaning("Largest error in each part of the run."));
+    let course = Column::words("error over the run").meaning("Largest error in each part of the run.");
+    table.columns.insert(1, course);
     for (k, row) in table.rows.iter_mut().enumerate() {
         let line = profiles.peaks.get(k).map_or(String::new(), |peaks| spark(peaks, profiles.most));
         row.insert(1, line);
@@ -213,7 +203,6 @@ fn joints(replay: &Replay, profiles: &Profiles) -> Section {
     Section::new(Id::JOINTS, "Joints", [table])
 }
 
-/// A lag with its interval.
 pub(super) fn lag(joint: &JointReplay) -> String {
     let interval = joint.lag_interval_s.map_or(String::new(), |[a, b]| format!(" ({}..{})", ms(a), ms(b)));
     joint.lag_s.map_or("-".to_owned(), |lag_s| ms(lag_s) + &interval)
@@ -240,10 +229,9 @@ fn verdict(result: &GateResult, [undated, starts]: [usize; 2], unseen: bool) -> 
     let part = if unseen { part + "; joints that were left out are not judged" } else { part };
     let limit = with_unit(gate.dimension, kind, result.limit);
     let allowed = format!("{limit} allowed{part}");
-    let sentence = |found: String| Sentence::Verdict {
-        limit: format!("Limit on {}", gate.name),
-        kept: result.kept,
-        found: format!("{found}, {allowed}."),
+    let sentence = |found: String| {
+        let (limit, found) = (format!("Limit on {}", gate.name), format!("{found}, {allowed}."));
+        Sentence::Verdict { limit, kept: result.kept, found }
     };
     let Some(joint) = &result.joint else { return sentence("nothing to judge".to_owned()) };
     let time = result.time_s.map_or(String::new(), |t| format!(" at {t:.2} s"));

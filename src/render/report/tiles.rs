@@ -19,7 +19,6 @@ use crate::{
     workflow::report::Report,
 };
 
-/// Transitions drawn at most.
 pub(super) const MOST: usize = 48;
 /// Places of a series at most, nearly.
 const PLACES: usize = 300;
@@ -107,36 +106,21 @@ pub(super) fn tile(transition: &Transition, pair: &Pair, [before_s, after_s]: [f
     };
     let unit = unit(Dimension::Position, pair.kind);
     let series = |name: &str, role, y| Series::of(name, role, 0, y);
+    let planned = series("planned", Role::Planned, shown(&planned, base, sign));
+    let both = vec![planned, series("measured", Role::Measured, shown(&measured, base, sign))];
+    let behind = vec![series("behind", Role::Error, shown(&behind, 0.0, 1.0))];
+    let (kind, sign) = (transition.kind.name(), number(Dimension::Sign, pair.kind, sign));
+    let late = transition.onset_delay_s.map_or_else(|| transition.answer.word().to_owned(), late);
     let waits = transition.measured_onset_s.map(|s| s - onset_s).filter(|late_s| *late_s > 0.0);
     Chart {
-        title: format!(
-            "{} {} {} at {onset_s:.2} s",
-            transition.joint,
-            transition.kind.name(),
-            number(Dimension::Sign, pair.kind, sign),
-        ),
-        note: format!(
-            "peak {}, {}",
-            position(pair.kind, transition.peak_error),
-            transition.onset_delay_s.map_or_else(|| transition.answer.word().to_owned(), late),
-        ),
+        title: format!("{} {kind} {sign} at {onset_s:.2} s", transition.joint),
+        note: format!("peak {}, {late}", position(pair.kind, transition.peak_error)),
         x_label: "Time from the planned start (s)".into(),
         xs: vec![times(&t_s, &places)],
         x_range: None,
         panels: vec![
-            Panel::of(
-                format!("Position ({unit})"),
-                0.5,
-                vec![
-                    series("planned", Role::Planned, shown(&planned, base, sign)),
-                    series("measured", Role::Measured, shown(&measured, base, sign)),
-                ],
-            ),
-            Panel::of(
-                format!("Behind ({unit})"),
-                0.5,
-                vec![series("behind", Role::Error, shown(&behind, 0.0, 1.0))],
-            ),
+            Panel::of(format!("Position ({unit})"), 0.5, both),
+            Panel::of(format!("Behind ({unit})"), 0.5, behind),
         ],
         bands: waits.map(|late_s| Band { from: 0.0, to: rounded(late_s), late: true }).into_iter().collect(),
         group: None,

@@ -10,7 +10,6 @@ use crate::{
     workflow::report::{Report, Tool},
 };
 
-/// The section on the tool.
 pub(super) const ID: Id = Id("tool");
 
 /// The answer in a sentence; `None` where there is no arm.

@@ -59,20 +59,15 @@ pub(super) fn tool_chapter(report: &Report, plots: &mut Plots, most: usize) -> O
     })
 }
 
-/// The error over time.
 pub(super) fn error_chart(found: &ToolReplay, path: &ToolPath) -> Chart {
     let places = envelope(&path.segments, &[&path.error_m, &path.along_m, &path.orientation_rad], MOST[0]);
     let shown =
         |values: &[f64], kind| at(values, &places).map(|value| rounded(on_paper(kind, value))).collect();
     let series = |name: &str, role, y| Series::of(name, role, 0, y);
-    let mut panels = vec![Panel::of(
-        "Error (mm)",
-        if found.rms_orientation_rad.is_some() { 0.65 } else { 1.0 },
-        vec![
-            series("distance", Role::Error, shown(&path.error_m, Slides)),
-            series("behind along the path", Role::Measured, shown(&path.along_m, Slides)),
-        ],
-    )];
+    let distance = series("distance", Role::Error, shown(&path.error_m, Slides));
+    let along = series("behind along the path", Role::Measured, shown(&path.along_m, Slides));
+    let share = if found.rms_orientation_rad.is_some() { 0.65 } else { 1.0 };
+    let mut panels = vec![Panel::of("Error (mm)", share, vec![distance, along])];
     if found.rms_orientation_rad.is_some() {
         let angle = series("orientation", Role::Before, shown(&path.orientation_rad, Turns));
         panels.push(Panel::of("Angle (deg)", 0.35, vec![angle]));

@@ -31,7 +31,6 @@ fn said(run: &Run) -> String {
     format!("{}  {name}: {}, {}{remarks}  {page}", began(run), found(run), verdict(run.verdict))
 }
 
-/// When a run began.
 fn began(run: &Run) -> String {
     run.started_at.as_deref().map_or(NONE.to_owned(), |at| at.trim_end_matches('Z').replace('T', " "))
 }
@@ -82,7 +81,6 @@ pub(crate) fn trouble(why: &str) -> String {
     format!("looked in vain, and again soon: {why}")
 }
 
-/// What was done.
 pub(crate) fn watched(watched: &Watched) -> Document {
     let not_kept = match watched.not_kept {
         0 => String::new(),

@@ -25,12 +25,10 @@ use crate::{
     },
 };
 
-/// Trends that are drawn.
 const MOST_DRAWN: usize = 120;
 /// Runs of a trend that are drawn, the newest.
 const MOST_RUNS: usize = 400;
 
-/// The page of all runs.
 pub(crate) fn index(index: &Index<'_>) -> String {
     let (done, failed): (Vec<&Run>, Vec<&Run>) = index.runs.iter().partition(|run| run.page.is_some());
     let mut plots = Plots::default();
@@ -201,13 +199,11 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
     }
 }
 
-/// What changes on a machine.
 fn drifts(drift: Option<&Drift>, machine: &str) -> Vec<String> {
     let trends = drift.iter().flat_map(|drift| &drift.trends);
     trends.filter(|trend| trend.found && trend.machine == machine).map(said).collect()
 }
 
-/// A joint in a run.
 struct Point<'a> {
     x: f64,
     plan: Option<&'a str>,

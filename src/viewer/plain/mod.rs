@@ -24,10 +24,6 @@ use crate::{
 use drawn::Drawn;
 
 /// Writes a blueprint for `rerun LOG FILE`.
-///
-/// # Errors
-///
-/// [`ViewError`] if Rerun draws nothing of the log, or the file cannot be written.
 pub(crate) fn write_blueprint(charts: &Charts, file: &Path) -> Result<(), ViewError> {
     let bytes = of(charts).ok_or(ViewError::Undrawn)?.bytes(&application(charts))?;
     write_atomically::<_, ViewError>(file, |out| Ok(out.write_all(&bytes).map_err(ViewError::Write)?))

@@ -187,14 +187,8 @@ impl Gates {
                 }
             });
             let pair = worst.as_ref().and_then(|worst| worst.pair.as_ref());
-            GateResult {
-                gate,
-                limit,
-                found: worst.as_ref().map(|worst| worst.value),
-                joint: pair.map(|(joint, _)| joint.clone()),
-                time_s: pair.map(|(_, at_s)| *at_s),
-                kept,
-            }
+            let (joint, time_s) = (pair.map(|(joint, _)| joint.clone()), pair.map(|(_, at_s)| *at_s));
+            GateResult { gate, limit, found: worst.as_ref().map(|worst| worst.value), joint, time_s, kept }
         };
         self.gates.iter().map(judge).collect()
     }

@@ -111,11 +111,9 @@ fn check_kinds(joints: &[String], reports: &[&Report]) -> Result<(), CompareFail
 /// [`CompareFailure`] if a run cannot be analysed or the runs share no joint.
 pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     let mut remarks = Remarks::default();
-    let inputs = &Inputs {
-        before: each_once(Side::Before, &inputs.before, &mut remarks),
-        after: each_once(Side::After, &inputs.after, &mut remarks),
-        ..inputs.clone()
-    };
+    let before = each_once(Side::Before, &inputs.before, &mut remarks);
+    let after = each_once(Side::After, &inputs.after, &mut remarks);
+    let inputs = &Inputs { before, after, ..inputs.clone() };
     let (paths_before, mut before) =
         each_run_once(Side::Before, analysed(inputs, &inputs.before)?, &mut remarks);
     let (paths_after, mut after) = each_run_once(Side::After, analysed(inputs, &inputs.after)?, &mut remarks);
@@ -155,12 +153,9 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     for (k, a) in inputs.before.iter().enumerate() {
         let is_it = |(other, b): &(usize, &PathBuf)| is_same(a, b) || is_one_run(&before[k], &after[*other]);
         for (_, b) in inputs.after.iter().enumerate().filter(is_it) {
-            let message = format!(
-                "{} before and {} after are one and the same run; their difference says nothing",
-                a.display(),
-                b.display()
-            );
-            remarks.add(Code::SameRun, 1, message);
+            let (a, b) = (a.display(), b.display());
+            let same = "are one and the same run; their difference says nothing";
+            remarks.add(Code::SameRun, 1, format!("{a} before and {b} after {same}"));
         }
     }
     let explained = lacking(&all, first.replay.transitions.len(), &mut remarks);
@@ -211,12 +206,8 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
 
 fn analysed(inputs: &Inputs, logs: &[PathBuf]) -> Result<Vec<Report>, CompareFailure> {
     let analyse = |path: &PathBuf| {
-        let inputs = report::Inputs {
-            logs: vec![path.clone()],
-            read: inputs.read.clone(),
-            rules: inputs.rules.clone(),
-            ..report::Inputs::default()
-        };
+        let (logs, read, rules) = (vec![path.clone()], inputs.read.clone(), inputs.rules.clone());
+        let inputs = report::Inputs { logs, read, rules, ..report::Inputs::default() };
         report::run(&inputs).map_err(|source| CompareFailure::Run { path: path.clone(), source })
     };
     logs.iter().map(analyse).collect()

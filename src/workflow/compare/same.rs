@@ -38,11 +38,8 @@ pub(super) fn each_run_once(
     for report in reports {
         match once.iter().find(|other| is_one_run(other, &report)) {
             Some(other) => {
-                let message = format!(
-                    "{} and {} {side} the change are one run; it counts once",
-                    path(other),
-                    path(&report)
-                );
+                let [one, other] = [other, &report].map(path);
+                let message = format!("{one} and {other} {side} the change are one run; it counts once");
                 remarks.add(Code::SameRun, 1, message);
             }
             None => once.push(report),

@@ -58,13 +58,8 @@ fn cut(
 ) -> Result<Vec<Transition>, CompareFailure> {
     let mut read = inputs.read.clone();
     read.range = TimeRange::of_seconds(Some(from_s), Some(to_s));
-    let again = report::Inputs {
-        logs: report.paths.clone(),
-        read,
-        rules: inputs.rules.clone(),
-        stretches_s,
-        ..report::Inputs::default()
-    };
+    let (logs, rules) = (report.paths.clone(), inputs.rules.clone());
+    let again = report::Inputs { logs, read, rules, stretches_s, ..report::Inputs::default() };
     let failed =
         |source| CompareFailure::Run { path: report.paths.first().cloned().unwrap_or_default(), source };
     let part = report::run(&again).map_err(failed)?;

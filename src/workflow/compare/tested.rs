@@ -42,13 +42,8 @@ pub(super) fn by_runs([before, after]: &[Vec<f64>; 2], rules: &Rules) -> Option<
         (true, true) => Verdict::Smaller,
         (true, false) => Verdict::Larger,
     };
-    Some(Tested {
-        interval_95: Some(found.interval),
-        by_runs: Some([before.len(), after.len()]),
-        p_value: found.p,
-        p_is_exact: false,
-        verdict,
-    })
+    let (interval_95, by_runs) = (Some(found.interval), Some([before.len(), after.len()]));
+    Some(Tested { interval_95, by_runs, p_value: found.p, p_is_exact: false, verdict })
 }
 
 /// Differences in groups that begin within a time of one another, from instants, s, in order.
@@ -83,12 +78,7 @@ pub(super) fn by_events(events: &[Vec<f64>], mean_difference: Option<f64>, rules
         (_, true) if test.rank_sum < middle => Verdict::Smaller,
         (_, true) => Verdict::Larger,
     };
-    let half = half_interval(events);
-    Tested {
-        interval_95: mean_difference.zip(half).map(|(mean, half)| [mean - half, mean + half]),
-        by_runs: None,
-        p_value: test.p,
-        p_is_exact: test.exact,
-        verdict,
-    }
+    let both = mean_difference.zip(half_interval(events));
+    let interval_95 = both.map(|(mean, half)| [mean - half, mean + half]);
+    Tested { interval_95, by_runs: None, p_value: test.p, p_is_exact: test.exact, verdict }
 }

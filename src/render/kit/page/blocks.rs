@@ -4,7 +4,6 @@ use maud::{Markup, html};
 
 use crate::render::kit::{Align, Block, Check, Fact, Section, Table, clean};
 
-/// A section within a chapter.
 pub(in crate::render) fn headed(section: &Section) -> Markup {
     html! {
         @if let Some(heading) = &section.heading { h3 { (clean(heading)) } }
@@ -12,7 +11,6 @@ pub(in crate::render) fn headed(section: &Section) -> Markup {
     }
 }
 
-/// Sentences, facts and tables.
 pub(in crate::render) fn blocks(blocks: &[Block]) -> Markup {
     blocks_of(blocks, &[])
 }

@@ -4,7 +4,6 @@ use maud::{Markup, html};
 
 use crate::render::kit::{Sentence, clean};
 
-/// A box with a headline.
 pub(in crate::render) fn card(class: &str, label: &str, headline: &str, body: &Markup) -> Markup {
     html! {
         div class={ "card " (class) } {

@@ -8,11 +8,9 @@ use serde::Serialize;
 /// Panels above one another that share their horizontal axis.
 #[derive(Debug, Clone, Default, Serialize)]
 pub(in crate::render) struct Chart {
-    /// For people.
     pub(in crate::render) title: String,
     /// What to know of it, in a few numbers.
     pub(in crate::render) note: String,
-    /// The horizontal axis and its unit.
     pub(in crate::render) x_label: Cow<'static, str>,
     /// Horizontal coordinates, which series point into.
     pub(in crate::render) xs: Vec<Vec<f64>>,
@@ -51,11 +49,9 @@ impl Chart {
     }
 }
 
-/// How much room a chart takes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(in crate::render) enum Size {
-    /// The width of the page.
     #[default]
     Wide,
     /// Two beside each other.
@@ -67,10 +63,8 @@ pub(in crate::render) enum Size {
 /// One vertical axis.
 #[derive(Debug, Clone, Default, Serialize)]
 pub(in crate::render) struct Panel {
-    /// The axis and its unit.
     pub(in crate::render) label: String,
     pub(in crate::render) series: Vec<Series>,
-    /// Share of the height.
     pub(in crate::render) share: f64,
     /// Range of the axis, where several charts are to compare; otherwise that of the values.
     pub(in crate::render) range: Option<[f64; 2]>,
@@ -102,13 +96,11 @@ impl Series {
         Self { name: name.into(), role, x, y, names: Vec::new() }
     }
 
-    /// With a name for each point.
     pub(in crate::render) fn named(self, names: Vec<String>) -> Self {
         Self { names, ..self }
     }
 }
 
-/// A stretch of the horizontal axis.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(in crate::render) struct Band {
     pub(in crate::render) from: f64,
@@ -175,7 +167,6 @@ impl Chart {
         self.size == Size::Tile
     }
 
-    /// Range of the horizontal axis.
     pub(in crate::render) fn span(&self) -> [f64; 2] {
         self.x_range.unwrap_or_else(|| self.extent())
     }

@@ -6,12 +6,9 @@ use serde::Serialize;
 use super::chart::Chart;
 use crate::render::kit::clean;
 
-/// One of them.
 #[derive(Debug, Clone, Serialize)]
 pub(in crate::render) struct Choice {
-    /// What it is called.
     pub(in crate::render) name: String,
-    /// Its numbers.
     pub(in crate::render) lines: Vec<String>,
     /// What to type for it; empty where no line makes it.
     pub(in crate::render) command: String,

@@ -13,9 +13,7 @@ pub(in crate::render) struct Scene {
     pub(in crate::render) title: String,
     /// What the two paths are; that of the value goes before its numbers.
     pub(in crate::render) names: [&'static str; 2],
-    /// Of the positions.
     pub(in crate::render) unit: &'static str,
-    /// Of the value.
     pub(in crate::render) value_unit: &'static str,
     /// The broad pale path under the other.
     pub(in crate::render) planned: Vec<[f64; 3]>,
@@ -25,7 +23,6 @@ pub(in crate::render) struct Scene {
     pub(in crate::render) yaw: f64,
 }
 
-/// Steps of colour and width.
 const STEPS: usize = 5;
 /// The picture: its edge lengths, and its margin.
 const SIZE: [f64; 2] = [900.0, 480.0];
@@ -71,7 +68,6 @@ impl Scene {
         [y * yaw.1 - x * yaw.0, -(z * pitch.1 - depth * pitch.0)]
     }
 
-    /// The first view.
     fn picture(&self) -> Markup {
         let all = || self.planned.iter().chain(&self.measured).map(|place| self.seen(*place));
         let ([left, right], [top, bottom]) = (span(all().map(|p| p[0])), span(all().map(|p| p[1])));

@@ -10,9 +10,7 @@ pub(in crate::render) struct Row {
     pub(in crate::render) name: String,
     pub(in crate::render) value: f64,
     pub(in crate::render) interval: Option<[f64; 2]>,
-    /// The number as people read it.
     pub(in crate::render) text: String,
-    /// Stands out.
     pub(in crate::render) strong: bool,
 }
 

@@ -13,7 +13,6 @@ pub(super) fn strength(late: bool) -> f64 {
     if late { 0.45 } else { 0.13 }
 }
 
-/// A name with what is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Entry {
     name: String,
@@ -26,7 +25,6 @@ enum Mark {
     Band { late: bool },
 }
 
-/// Between entries.
 const GAP_MM: f64 = 4.0;
 
 /// What the axes leave open, each once: a series alone in its panel is named there.

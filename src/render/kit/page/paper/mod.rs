@@ -77,7 +77,6 @@ impl Paper {
         f64::from(chart.height) * if chart.is_tile() { 0.26 } else { 0.22 }
     }
 
-    /// Pixels of a length.
     fn px(self, mm: f64) -> i32 {
         #[expect(clippy::cast_possible_truncation, reason = "a length on paper")]
         let px = (mm * self.pixels_mm).round() as i32;
@@ -118,7 +117,6 @@ fn cut(text: &str, points: f64, room_mm: f64) -> String {
 /// A line above a small chart.
 const HEAD_MM: f64 = 3.4;
 
-/// One chart as an SVG document.
 pub(in crate::render) fn svg(chart: &Chart, paper: Paper) -> Result<String, Failure> {
     grid(std::slice::from_ref(chart), 1, paper)
 }

@@ -15,7 +15,6 @@ use crate::render::kit::{
     short,
 };
 
-/// Numbers and name of the horizontal axis.
 pub(super) const BELOW_MM: f64 = 8.6;
 /// Room where there is no such axis, so that numbers of two panels do not touch.
 const APART_MM: f64 = 2.4;
@@ -31,7 +30,6 @@ const UP_MM: f64 = 4.5;
 /// The same for the horizontal one.
 pub(super) const ACROSS_MM: f64 = 9.0;
 
-/// Numbers and name of the vertical axes.
 pub(super) fn left_mm(chart: &Chart) -> f64 {
     let numbers = chart.panels.iter().flat_map(|panel| {
         let [low, high] = panel.span();
