@@ -17,7 +17,7 @@ pub(super) enum FeedForward {
     /// The data do not show them: the estimate without costs less.
     None(Estimate),
     /// A loop without explains nearly as much.
-    MayBeNone(Model),
+    MayBeNone(Box<Model>),
     /// They do.
     Some,
 }
@@ -40,7 +40,7 @@ impl FeedForward {
         if other.cost_at(&without.x, found.scale_rad, workspace) < before {
             Self::None(without)
         } else if without.scale_rad < NEARLY * found.scale_rad {
-            Self::MayBeNone(other.model(&without.x))
+            Self::MayBeNone(Box::new(other.model(&without.x)))
         } else {
             Self::Some
         }

@@ -150,7 +150,7 @@ fn fed(problem: &mut Problem, mut found: Estimate, workspace: &mut Workspace) ->
             problem.shown.feed_forward = false;
             found = without;
         }
-        FeedForward::MayBeNone(model) => rivals.push(model),
+        FeedForward::MayBeNone(model) => rivals.push(*model),
         FeedForward::Some => {}
     }
     match SetValues::of(problem, &found, workspace) {
@@ -165,9 +165,9 @@ fn fed(problem: &mut Problem, mut found: Estimate, workspace: &mut Workspace) ->
                 may_be => {
                     problem.shown = shown;
                     found = late;
-                    rivals = prompt.into_iter().collect();
+                    rivals = prompt;
                     if let FeedForward::MayBeNone(model) = may_be {
-                        rivals.push(model);
+                        rivals.push(*model);
                     }
                 }
             }

@@ -33,7 +33,7 @@ const STARTS: [[f64; 3]; 2] = [[0.1, 0.15, 0.9], [0.15, 0.05, 0.05]];
 pub(super) enum SetValues {
     /// The data show them, in a model that has these parts; with the model of prompt ones where those come so little late that these may
     /// hold.
-    Late(Estimate, Shown, Option<Model>),
+    Late(Estimate, Shown, Vec<Model>),
     /// They hardly tell them from prompt ones.
     MayBeLate(Vec<Model>),
     /// Late ones explain the data worse, or what they explain has another cause.
@@ -56,7 +56,8 @@ impl SetValues {
                 model.set_values_late_s() < SHORTEST_S || model.position_gain_1_s * model.lag_s() > RINGS;
             if !stands_in && gained >= GAIN {
                 let unsure = model.set_values_late_s() < SURELY_LATE_S;
-                return Self::Late(best, other.shown, unsure.then(|| problem.model(&found.x)));
+                let prompt = unsure.then(|| problem.model(&found.x));
+                return Self::Late(best, other.shown, prompt.into_iter().collect());
             }
             models.extend((!stands_in && gained >= -AS_GOOD).then_some(model));
         }

@@ -18,7 +18,9 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
     let document: Map<String, Value> = parsed(text)?;
     let rows = split(&document).or_else(|| by_columns(&document)).or_else(|| within(document))?;
     let mut lines = JsonLines::default();
-    rows.into_iter().for_each(|row| lines.gather_object(row));
+    for row in rows {
+        lines.gather_object(row);
+    }
     Some(lines.table().into_bytes())
 }
 
@@ -58,7 +60,7 @@ fn by_columns(document: &Map<String, Value>) -> Option<Rows> {
             columns.iter().all(|(path, _)| path.len() > depth + 1 && path[depth] == *first)
         })
     };
-    let from = (0..).take_while(|depth| shared(*depth)).count();
+    let from = (0..columns[0].0.len()).take_while(|depth| shared(*depth)).count();
     let names: Vec<String> = columns.iter().map(|(path, _)| path[from..].join("_")).collect();
     let row =
         |at: usize| names.iter().cloned().zip(columns.iter().map(|(_, values)| values[at].clone())).collect();
@@ -85,7 +87,7 @@ fn gather<'a>(
         };
         match value {
             Value::Array(list) if list.iter().all(cell) => {
-                columns.push((path.clone(), list.iter().collect()))
+                columns.push((path.clone(), list.iter().collect()));
             }
             Value::Object(inner) if numbered(inner) => {
                 columns.push((path.clone(), (0..inner.len()).map(|at| &inner[&at.to_string()]).collect()));

@@ -61,7 +61,7 @@ fn pairs(line: &str) -> Pairs<'_> {
         };
         let (name, value) = (rest[..at].trim_end(), rest[at + 1..].trim_start());
         let end = value.find(separates).unwrap_or(value.len());
-        if name.contains(separates) || number(value[..end].as_bytes(), false).is_none() {
+        if name.contains(separates) || number(&value.as_bytes()[..end], false).is_none() {
             return Pairs::default();
         }
         values.push((name, &value[..end]));

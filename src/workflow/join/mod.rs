@@ -151,6 +151,16 @@ fn read_plan(path: &Path) -> Result<Plan, JoinFailure> {
     Ok(plan)
 }
 
+/// An error where the log measures no joint of the plan.
+fn check_joints(plan: &Plan, measured: &Series, path: &Path) -> Result<(), JoinFailure> {
+    if plan.planned.tracks.iter().any(|track| measured.track(track.name()).is_some()) {
+        return Ok(());
+    }
+    let names = |series: &Series| series.tracks.iter().map(Track::name).collect::<Vec<_>>().join(", ");
+    let (measured, planned) = (names(measured), names(&plan.planned));
+    Err(JoinFailure::OtherJoints { plan: path.to_owned(), measured, planned })
+}
+
 /// Adds the plan at the time at which its command was sent.
 ///
 /// # Errors
@@ -172,11 +182,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
             LogError::Missing { missing: "planned", .. } => JoinFailure::NothingSent(error),
             other => other.into(),
         })?;
-    let names = |series: &Series| series.tracks.iter().map(Track::name).collect::<Vec<_>>().join(", ");
-    if !plan.planned.tracks.iter().any(|track| run.measured.track(track.name()).is_some()) {
-        let (measured, planned) = (names(&run.measured), names(&plan.planned));
-        return Err(JoinFailure::OtherJoints { plan: inputs.plan.clone(), measured, planned });
-    }
+    check_joints(&plan, &run.measured, &inputs.plan)?;
     // A run that was read without a plan has none.
     let sent = (!run.planned.tracks.is_empty()).then_some(&run.planned);
     let topic = format!("{}:{}", run.source.planned_topic, run.source.planned_field);
