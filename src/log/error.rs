@@ -153,6 +153,8 @@ pub enum LogError {
         unit: &'static str,
         hint: Box<str>,
     },
+    #[error("nothing is left to save of {}, and nothing was written: {damage}", path.display())]
+    NothingLeft { path: PathBuf, damage: String },
     #[error("cannot write the log {}", path.display())]
     Copy { path: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
 }
