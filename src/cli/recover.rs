@@ -1,6 +1,6 @@
 //! `recover`
 
-use std::{path::PathBuf, slice::from_ref};
+use std::path::PathBuf;
 
 use super::{
     CliError, Outcome, Run,
@@ -11,8 +11,9 @@ use crate::{log::recover, render::recover as words, workflow::recover::RecoverDo
 /// Save every intact message of a damaged log
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The damaged log
-    log: PathBuf,
+    /// The damaged log, the parts of one run, or a bag directory: one log is made of them
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
 
     /// Write the intact messages to OUT, an MCAP log
     #[arg(short, long, value_name = "OUT")]
@@ -25,8 +26,8 @@ pub(super) struct Args {
 
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
-        spare_for_log(Some(&self.output), from_ref(&self.log))?;
-        let document = RecoverDocument::of(recover(&self.log, &self.output)?);
+        spare_for_log(Some(&self.output), &self.logs)?;
+        let document = RecoverDocument::of(recover(&self.logs, &self.output)?);
         let recovered = &document.recovered;
         let shown = || words::document(&self.output.to_string_lossy(), recovered);
         console.answer(self.json, &document, shown, &recovered.remarks, &[])

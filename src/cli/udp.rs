@@ -2,7 +2,7 @@
 
 use std::{
     io,
-    net::{SocketAddr, ToSocketAddrs as _, UdpSocket},
+    net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, ToSocketAddrs as _, UdpSocket},
     path::Path,
 };
 
@@ -16,7 +16,7 @@ use crate::{
 /// Room for packets that wait, bytes; a system gives as much of it as it allows.
 const ROOM: usize = 8 << 20;
 
-/// A socket at an address, with room for a burst.
+/// A socket at an address, with room for a burst; of a group of receivers it becomes one.
 pub(super) fn bound(address: &str) -> io::Result<UdpSocket> {
     let mut refused = io::Error::new(io::ErrorKind::InvalidInput, "the name leads to no address");
     for address in address.to_socket_addrs()? {
@@ -32,7 +32,27 @@ fn at(address: SocketAddr) -> io::Result<UdpSocket> {
     let socket = Socket::new(Domain::for_address(address), Type::DGRAM, None)?;
     // Less room than asked for is no reason to record nothing.
     let _ = socket.set_recv_buffer_size(ROOM);
-    socket.bind(&address.into())?;
+    let (group, mut local) = (address.ip(), address);
+    if group.is_multicast() {
+        // Others on this computer may listen, too.
+        socket.set_reuse_address(true)?;
+        // Windows binds to addresses of its own alone.
+        if cfg!(windows) {
+            local.set_ip(if group.is_ipv4() {
+                Ipv4Addr::UNSPECIFIED.into()
+            } else {
+                Ipv6Addr::UNSPECIFIED.into()
+            });
+        }
+    }
+    socket.bind(&local.into())?;
+    match group {
+        IpAddr::V4(group) if group.is_multicast() => {
+            socket.join_multicast_v4(&group, &Ipv4Addr::UNSPECIFIED)?;
+        }
+        IpAddr::V6(group) if group.is_multicast() => socket.join_multicast_v6(&group, 0)?,
+        _ => {}
+    }
     Ok(socket.into())
 }
 
@@ -62,6 +82,20 @@ pub(super) fn remark_lost(remarks: &mut Remarks, count: u64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn packets_to_a_group_come_to_who_listens_at_its_address() {
+        let group = Ipv4Addr::new(239, 255, 77, 1);
+        // A computer without a network has no way to any group.
+        let Ok(socket) = bound(&format!("{group}:0")) else { return };
+        socket.set_read_timeout(Some(std::time::Duration::from_secs(5))).unwrap();
+        let port = socket.local_addr().unwrap().port();
+        let sender = UdpSocket::bind("0.0.0.0:0").unwrap();
+        if sender.send_to(b"t_s", (group, port)).is_ok() {
+            assert_eq!(socket.recv(&mut [0; 16]).unwrap(), 3);
+        }
+    }
 
     #[test]
     fn what_was_lost_is_the_last_number_of_the_port() {

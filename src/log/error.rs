@@ -91,7 +91,7 @@ pub enum LogError {
     #[error(
         "the plan covers {:.2} to {:.2} s, the measurement {:.2} to {:.2} s: they have no time in common; {}",
         planned_s[0], planned_s[1], measured_s[0], measured_s[1],
-        if *no_other_clock { "give a plan and a measurement of one run, with times that count from one instant" } else { "if their clocks differ, try --time log" }
+        if *no_other_clock { "give a plan and a measurement of one run, with times that count from one instant" } else { "if their clocks differ, try --time log, or put the plan in its place: `hydrotrace join MEASUREMENT --plan PLAN --at SECONDS -o run.mcap`" }
     )]
     NoOverlap { planned_s: [f64; 2], measured_s: [f64; 2], no_other_clock: bool },
     #[error(
@@ -153,6 +153,8 @@ pub enum LogError {
         unit: &'static str,
         hint: Box<str>,
     },
+    #[error("nothing is left to save of {}, and nothing was written: {damage}", path.display())]
+    NothingLeft { path: PathBuf, damage: String },
     #[error("cannot write the log {}", path.display())]
     Copy { path: PathBuf, source: Box<dyn std::error::Error + Send + Sync> },
 }

@@ -159,10 +159,22 @@ impl LogFiles {
     ///
     /// [`LogError::NotMcap`].
     pub fn scan(&self) -> Result<ScannedLog<'_>, LogError> {
-        let files = self.files.iter().map(|(path, source)| ScannedFile::of(path, source));
-        let files = files.collect::<Result<_, _>>()?;
+        let (log, others) = self.scan_logs();
+        others.into_iter().next().map_or(Ok(log), Err)
+    }
+
+    /// Finds the records of the files that are logs, and says of the others why they are none.
+    pub(super) fn scan_logs(&self) -> (ScannedLog<'_>, Vec<LogError>) {
         let Self { ordered, described, .. } = *self;
-        Ok(ScannedLog { files, ordered, described, remarks: self.remarks.clone() })
+        let mut log = ScannedLog { files: Vec::new(), ordered, described, remarks: self.remarks.clone() };
+        let mut others = Vec::new();
+        for (path, source) in &self.files {
+            match ScannedFile::of(path, source) {
+                Ok(file) => log.files.push(file),
+                Err(error) => others.push(error),
+            }
+        }
+        (log, others)
     }
 }
 

@@ -37,6 +37,7 @@ mod lenient;
 mod letter;
 mod levels;
 mod lists;
+mod live_clock;
 mod long;
 mod lvm;
 mod map;

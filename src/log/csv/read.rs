@@ -306,6 +306,11 @@ fn drop_outside(stamp_ns: &mut Vec<i64>, columns: &mut BTreeMap<usize, Column>) 
     dropped
 }
 
+/// What is said of rows that repeat a stamp, and of rows that came late.
+pub(super) const REPEATED: &str =
+    "rows with the time of the row before; kept as they are, a report uses the first of each";
+pub(super) const LATE: &str = "rows earlier than the row before; a report puts those that came late in their place and leaves out the others";
+
 /// Fewer rows than this that step back came late; more are on a clock that was set back.
 const FEWEST: usize = 8;
 
@@ -315,8 +320,7 @@ const FEWEST: usize = 8;
 fn received(stamp_ns: &[i64], remarks: &mut Remarks) -> Vec<i64> {
     let steps = || stamp_ns.windows(2).map(|w| w[1].saturating_sub(w[0]));
     let repeated = steps().filter(|step| *step == 0).count() as u64;
-    let message = "rows with the time of the row before; kept as they are, a report uses the first of each";
-    remarks.add(Code::DuplicateStamp, repeated, message);
+    remarks.add(Code::DuplicateStamp, repeated, REPEATED);
     let forward: Vec<f64> = steps().filter(|step| *step > 0).map(|step| step as f64).collect();
     let usual_ns = if forward.is_empty() { 0 } else { whole_ns(median(forward)) };
     let (mut shift_ns, mut latest_ns) = (0_i64, i64::MIN);
@@ -336,9 +340,7 @@ fn received(stamp_ns: &[i64], remarks: &mut Remarks) -> Vec<i64> {
         latest_ns = latest_ns.max(stamp.saturating_add(shift_ns));
         received.push(latest_ns);
     }
-    let message = "rows earlier than the row before; a report puts those that came late in their place and \
-                   leaves out the others";
-    remarks.add(Code::Reordered, late, message);
+    remarks.add(Code::Reordered, late, LATE);
     let message = format!(
         "places where the clock goes back, by up to {:.3} s; no row is lost, a report splits the run there and \
          goes on in the order of the rows",

@@ -11,13 +11,14 @@ use super::{
     decimal_mark::DecimalMark,
     expression,
     judged::Judge,
+    live_clock::LiveClock,
     number::number,
     only::{self, Only},
     read::{Cells, Column, Ends},
     rows::Rows,
     si::{self, Settled},
     text,
-    time::{FIRST_ABSOLUTE_NS, TimeSource},
+    time::FIRST_ABSOLUTE_NS,
 };
 use crate::{
     log::{LogWriter, WriteError, WriteOptions},
@@ -26,9 +27,6 @@ use crate::{
 
 /// Stamps of messages end with 31 bits of seconds.
 const LAST_NS: i64 = i32::MAX as i64 * 1_000_000_000;
-
-/// So many rows in turn that are behind the latest say that the clock was set back.
-const SET_BACK: u32 = 8;
 
 /// A table whose rows are yet to come. What its columns are is settled by the first rows, as [`read_csv_bytes`] does;
 /// a unit is not guessed.
@@ -44,13 +42,7 @@ pub struct TableStream {
     only: Option<Only>,
     /// Line of the first row in what is written first; 0 afterwards.
     first_line: u64,
-    /// Latest instant of receipt, what the clock was set back by, the last step, ns; rows behind in turn.
-    latest_ns: i64,
-    shift_ns: i64,
-    step_ns: i64,
-    behind: u32,
-    day_ns: i64,
-    before_ns: i64,
+    clock: LiveClock,
     counts: Counts,
     ends: Ends,
     /// A header with other columns came: what is below it is not read.
@@ -69,8 +61,6 @@ struct Counts {
     bad_cells: u64,
     others: u64,
     called_bad: u64,
-    late: u64,
-    set_back: u64,
 }
 
 impl TableStream {
@@ -92,7 +82,9 @@ impl TableStream {
         let form = Form::of(name, &text, options, &mut remarks)?;
         let judge = Judge::of(&form.head);
         let (run, units) = form.read(name, &text, remarks)?;
-        let run = run.given(options.given());
+        let mut run = run.given(options.given());
+        // The first rows are counted with all others.
+        run.remarks.retain(|remark| !LiveClock::SAYS.contains(&remark.code));
         let guessed =
             |column: &usize| units.iter().any(|unit| unit.column == *column && unit.from == "guess");
         let positions = form.layout.uses.iter().filter(|one| one.quantity == Quantity::Position);
@@ -107,12 +99,7 @@ impl TableStream {
             units,
             run,
             rows: 0,
-            latest_ns: i64::MIN,
-            shift_ns: 0,
-            step_ns: 0,
-            behind: 0,
-            day_ns: 0,
-            before_ns: i64::MIN,
+            clock: LiveClock::default(),
             counts: Counts::default(),
             ends: Ends::default(),
             over: false,
@@ -124,6 +111,14 @@ impl TableStream {
     /// The same, said to come from a file of this name.
     pub fn named(mut self, file: String) -> Self {
         self.run.understood.file = file;
+        self
+    }
+
+    /// The same, of rows that follow those of another header: times of a day are of the day that was reached.
+    pub fn after(mut self, before: Option<&Self>) -> Self {
+        if let Some(before) = before {
+            self.clock = before.clock.going_on();
+        }
         self
     }
 
@@ -231,56 +226,25 @@ impl TableStream {
             self.counts.unstamped += 1;
             return;
         };
-        let ns = self.settled(ns);
+        // A clock that counted from its start may be set on the way.
+        let absolute = self.run.understood.time.absolute || ns >= FIRST_ABSOLUTE_NS;
+        let ns = self.clock.settled(&self.form.time, ns, absolute);
         if !(0..=LAST_NS).contains(&ns) {
             self.counts.unstamped += 1;
             return;
         }
         self.ends.note(record.iter().next_back().unwrap_or_default(), dialect.decimal_comma);
         cells.stamp_ns.push(ns);
-        cells.received_ns.push(self.received(ns));
+        cells.received_ns.push(self.clock.received(ns));
         for (&at, column) in &mut cells.columns {
             column.push(cell(at), line, dialect.decimal_comma);
         }
     }
 
-    /// The stamp on the clock of the log: times of a day go on after midnight, others count from a fixed instant.
-    fn settled(&mut self, ns: i64) -> i64 {
-        self.day_ns += TimeSource::DAY_NS * i64::from(self.form.time.next_day(self.before_ns, ns));
-        self.before_ns = ns;
-        let mut one = [ns.saturating_add(self.day_ns)];
-        // A clock that counted from its start may be set on the way.
-        let absolute = self.run.understood.time.absolute || ns >= FIRST_ABSOLUTE_NS;
-        self.form.time.count_from(absolute, &mut one);
-        one[0]
-    }
-
-    /// When the row counts as received: never before the row before it, and on where the clock was set back.
-    fn received(&mut self, ns: i64) -> i64 {
-        let at_ns = ns.saturating_add(self.shift_ns);
-        if at_ns >= self.latest_ns {
-            if self.latest_ns > i64::MIN {
-                self.step_ns = at_ns - self.latest_ns;
-            }
-            (self.behind, self.latest_ns) = (0, at_ns);
-        } else {
-            self.behind += 1;
-            self.counts.late += 1;
-            if self.behind == SET_BACK {
-                self.shift_ns = self.latest_ns.saturating_sub(ns).saturating_add(self.step_ns);
-                self.counts.late -= u64::from(SET_BACK);
-                self.counts.set_back += 1;
-                self.behind = 0;
-            }
-        }
-        self.latest_ns
-    }
-
     /// Doubts so far.
     pub fn remarks(&self) -> Remarks {
         let mut remarks = self.run.remarks.clone();
-        let Counts { above, cut, ragged, unstamped, bad_cells, others, called_bad, late, set_back } =
-            self.counts;
+        let Counts { above, cut, ragged, unstamped, bad_cells, others, called_bad } = self.counts;
         let width = self.form.dialect.width;
         if let Some(only) = self.only.as_ref().filter(|_| self.form.options.only.is_none()) {
             remarks.add(
@@ -312,12 +276,7 @@ impl TableStream {
             "lines without a time, such as a header again, or with one that no log holds; left out",
         );
         remarks.add(Code::NotFinite, bad_cells, "cells that are no number; left empty");
-        remarks.add(Code::Reordered, late, "rows earlier than the row before");
-        remarks.add(
-            Code::ClockJump,
-            set_back,
-            "places where the clock goes back; a report splits the run there",
-        );
+        self.clock.remark(&mut remarks);
         remarks
     }
 }

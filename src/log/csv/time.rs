@@ -134,12 +134,16 @@ impl TimeSource {
 
     pub(super) const DAY_NS: i64 = 86_400_000_000_000;
 
-    /// Whether a time of a day that follows another is on the next day.
-    pub(super) fn next_day(&self, before_ns: i64, ns: i64) -> bool {
+    /// Whether its times are of a day that they do not say.
+    pub(super) fn is_of_day(&self) -> bool {
         let whole =
             if let Self::WithPart { whole, .. } | Self::Spread { whole, .. } = self { whole } else { self };
         matches!(whole, Self::Date { form, .. } if form.part == Part::TimeOfDay)
-            && before_ns.saturating_sub(ns) > Self::DAY_NS / 2
+    }
+
+    /// Whether a time of a day that follows another is on the next day.
+    pub(super) fn next_day(&self, before_ns: i64, ns: i64) -> bool {
+        self.is_of_day() && before_ns.saturating_sub(ns) > Self::DAY_NS / 2
     }
 
     /// Lets stamps that say no date count from a fixed instant.

@@ -62,6 +62,11 @@ pub(super) fn unpacked(source: Source) -> io::Result<Source> {
             }
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             Err(_) if length > 0 => break,
+            // A block of zstd, up to 128 kB, is unpacked whole or not at all.
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
+                let why = "it was cut within the first block that is packed in it, of which nothing can be unpacked; copy it again";
+                return Err(io::Error::new(error.kind(), why));
+            }
             Err(error) => return Err(error),
         }
     }

@@ -329,11 +329,9 @@ impl Assembly {
         remarks: &mut Remarks,
     ) -> Vec<Signal> {
         let found = self.samples(candidate, false, pending, remarks);
-        let signal = |one: Samples| {
-            let quantity = role.quantity(self.kinds.of(candidate.source, &one.name));
-            one.into_signal(quantity)
-        };
-        found.into_iter().filter_map(signal).collect()
+        let quantity = |one: &Samples| role.quantity(self.kinds.of(candidate.source, &one.name));
+        let found = found.into_iter().map(|one| (quantity(&one), one));
+        found.filter_map(|(quantity, one)| one.into_signal(quantity)).collect()
     }
 
     fn source_info(
@@ -377,6 +375,7 @@ impl Assembly {
             time_base_why,
             messages: choice.measured.iter().enumerate().map(messages).sum(),
             epoch_ns: self.epoch_ns,
+            epoch_set_ns: SourceInfo::epoch_set_ns(self.epoch_ns, &self.jumps_ns),
             duration_s: if cut { last_s - first_s.min(last_s) } else { last_s },
             recorder_delay_s: delays_ns
                 .map(|[_, middle, most]| [middle, most].map(|ns| seconds_since(0, ns))),

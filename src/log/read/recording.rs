@@ -62,6 +62,9 @@ pub struct SourceInfo {
     pub messages: u64,
     /// The instant that times count from, ns since 1970.
     pub epoch_ns: i64,
+    /// The same by its clock as that was set on the way, where it began without a date.
+    #[serde(skip)]
+    pub epoch_set_ns: Option<i64>,
     /// From the first to the last sample, s.
     pub duration_s: f64,
     /// Median and largest delay from the header's stamp to the recorder, s, where both exist.
@@ -78,7 +81,14 @@ impl SourceInfo {
     /// When the run began, ns since 1970; `None` where its stamps say no date.
     pub fn began_ns(&self) -> Option<i64> {
         let undated = self.origin.as_ref().is_some_and(|origin| origin.undated);
-        Some(self.epoch_ns).filter(|epoch_ns| !undated && is_dated(*epoch_ns))
+        let dated = |epoch_ns: &i64| !undated && is_dated(*epoch_ns);
+        Some(self.epoch_ns).filter(dated).or(self.epoch_set_ns.filter(dated))
+    }
+
+    /// The instant `epoch_ns` by a clock that was set by one of these jumps, if it says no date and that does.
+    pub(super) fn epoch_set_ns(epoch_ns: i64, jumps_ns: &[i64]) -> Option<i64> {
+        let set = |jump_ns: &i64| Some(epoch_ns.saturating_sub(*jump_ns)).filter(|ns| is_dated(*ns));
+        jumps_ns.iter().find_map(set).filter(|_| !is_dated(epoch_ns))
     }
 }
 

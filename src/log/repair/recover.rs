@@ -3,7 +3,7 @@
 use std::{
     collections::BTreeMap,
     io::{BufWriter, Seek, Write},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 use serde::{Deserialize, Serialize};
@@ -12,11 +12,9 @@ use super::copy::{Copier, CopyError, copy_files, writer};
 use crate::{
     atomic_file::write_atomically,
     log::{
-        csv::CsvOptions,
         error::LogError,
         file::{Blocks, Loss, MessageRecord, Opcode, records},
-        files::ScannedFile,
-        input::Input,
+        files::{LogFiles, ScannedFile, ScannedLog},
         recovered,
     },
     remark::{Code, Remarks},
@@ -42,29 +40,43 @@ pub struct Recovered {
     pub remarks: Remarks,
 }
 
-/// Writes all whole messages of `log`, those of a partial last chunk included, to `output`.
+/// Writes all whole messages of the files of a run, those of partial last chunks included, to `output`; a bag directory
+/// stands for its files, and what is no log among several is left out.
 ///
 /// Messages keep their bytes, times and sequence numbers; attachments and metadata are copied.
 ///
 /// # Errors
 ///
-/// [`LogError`] if `log` is no log at all, or `output` cannot be written.
-pub fn recover(log: &Path, output: &Path) -> Result<Recovered, LogError> {
-    let mut doubts = Remarks::default();
-    let (_, source) = Input::Path(log.to_owned()).open(&CsvOptions::default(), &mut doubts)?;
-    let file = ScannedFile::of(log, &source)?;
-    let layout = &file.layout;
-    let mut remarks = doubts;
-    file.remark_damage(&mut remarks);
+/// [`LogError`] if nothing is a log, nothing of one is left, or `output` cannot be written.
+pub fn recover(logs: &[PathBuf], output: &Path) -> Result<Recovered, LogError> {
+    let files = LogFiles::open(logs)?;
+    let (log, mut others) = files.scan_logs();
+    if log.files.is_empty() && !others.is_empty() {
+        return Err(others.swap_remove(0));
+    }
+    let mut remarks = log.remarks.clone();
+    for other in others {
+        remarks.add(Code::DamagedBytes, 1, format!("{other}; left out"));
+    }
     let mut saved = Recovered {
         messages: 0,
         doubtful: 0,
-        blocks: layout.blocks.len(),
+        blocks: log.files.iter().map(|file| file.layout.blocks.len()).sum(),
         dropped_blocks: 0,
-        attachments: layout.attachments.len(),
+        attachments: log.files.iter().map(|file| file.layout.attachments.len()).sum(),
         remarks,
     };
-    let written = write_atomically::<_, CopyError>(output, |output| copy(&file, output, &mut saved));
+    let mut is_nothing = false;
+    let written = write_atomically::<_, CopyError>(output, |output| {
+        copy(&log, output, &mut saved)?;
+        is_nothing = saved.messages == 0 && saved.attachments == 0 && !saved.remarks.is_empty();
+        if is_nothing { Err(std::io::Error::other("nothing is left").into()) } else { Ok(()) }
+    });
+    if is_nothing {
+        let damage = saved.remarks.as_slice().iter().map(|one| format!("{} x{}", one.message, one.count));
+        let damage = damage.collect::<Vec<_>>().join("; ");
+        return Err(LogError::NothingLeft { path: logs.first().cloned().unwrap_or_default(), damage });
+    }
     written.map_err(|error| error.of(output))?;
     Ok(saved)
 }
@@ -85,17 +97,44 @@ fn places(chunks: &[(usize, u64, u64)]) -> (u64, String) {
 }
 
 fn copy<W: Write + Seek>(
-    file: &ScannedFile<'_>,
+    log: &ScannedLog<'_>,
     output: &mut BufWriter<W>,
     saved: &mut Recovered,
 ) -> Result<(), CopyError> {
-    let layout = &file.layout;
-    let mut writer = writer(output, &layout.profile)?;
-    copy_files(&mut writer, file, &[])?;
+    let files = log.in_order();
+    let mut writer = writer(output, files.first().map_or("", |file| file.layout.profile.as_str()))?;
+    let (mut kept, mut blocks) = (Vec::new(), Blocks::new());
+    for file in &files {
+        file.remark_damage(&mut saved.remarks);
+        // Parts of a run each tell the same of it.
+        copy_files(&mut writer, file, &kept)?;
+        let layout = &file.layout;
+        let names = layout.attachments.iter().map(|one| one.name.as_str());
+        kept.extend(names.chain(layout.metadata.iter().map(|one| one.name.as_str())));
+        let of = if files.len() > 1 { format!("{}, ", file.name()) } else { String::new() };
+        copy_messages(file, &of, &mut writer, &mut blocks, saved)?;
+    }
+    if saved.doubtful > 0 {
+        writer.write_metadata(&mcap::records::Metadata {
+            name: recovered::METADATA.to_owned(),
+            metadata: recovered::metadata(saved.doubtful),
+        })?;
+    }
+    writer.finish()?;
+    Ok(())
+}
+
+/// `of`: what says which file is meant, in front of its chunks.
+fn copy_messages<W: Write + Seek>(
+    file: &ScannedFile<'_>,
+    of: &str,
+    writer: &mut mcap::Writer<W>,
+    blocks: &mut Blocks,
+    saved: &mut Recovered,
+) -> Result<(), CopyError> {
     let mut copier = Copier::of(file);
-    let mut blocks = Blocks::new();
     let (mut doubtful, mut dropped) = (Places::new(), Places::new());
-    for (number, block) in (1..).zip(&layout.blocks) {
+    for (number, block) in (1..).zip(&file.layout.blocks) {
         let (bytes, loss) = blocks.open_doubtful(*block, file.source);
         let before = saved.messages;
         let mut end = 0;
@@ -105,7 +144,7 @@ fn copy<W: Write + Seek>(
                 continue;
             }
             let Some(message) = MessageRecord::parse(record.body) else { continue };
-            saved.messages += u64::from(copier.message(&mut writer, &message)?);
+            saved.messages += u64::from(copier.message(writer, &message)?);
         }
         match loss {
             Loss::Nothing if end < bytes.len() => {
@@ -116,8 +155,10 @@ fn copy<W: Write + Seek>(
             Loss::Nothing => {}
             Loss::Cut => {
                 let kept = saved.messages - before;
-                let message =
-                    format!("the file ends within a chunk; {kept} whole messages before the cut were kept");
+                saved.dropped_blocks += u64::from(kept == 0);
+                let message = format!(
+                    "{of}the file ends within a chunk; {kept} whole messages before the cut were kept"
+                );
                 saved.remarks.add(Code::PartialChunk, 1, message);
             }
             // Nothing of it could be unpacked.
@@ -139,24 +180,15 @@ fn copy<W: Write + Seek>(
     for (reason, chunks) in &doubtful {
         let (kept, places) = places(chunks);
         let message =
-            format!("messages of chunks were kept of which some may be wrong: of {places} {reason}");
+            format!("messages of chunks were kept of which some may be wrong: of {of}{places} {reason}");
         saved.remarks.add(Code::DamagedChunk, kept.max(1), message);
     }
     for (reason, chunks) in &dropped {
         let (count, places) = places(chunks);
-        saved.remarks.add(Code::DamagedChunk, count, format!("chunks were dropped: of {places} {reason}"));
+        let message = format!("chunks were dropped: of {of}{places} {reason}");
+        saved.remarks.add(Code::DamagedChunk, count, message);
     }
-    saved.remarks.add(
-        Code::UnknownChannel,
-        copier.unknown,
-        "messages of channels that the file does not define",
-    );
-    if saved.doubtful > 0 {
-        writer.write_metadata(&mcap::records::Metadata {
-            name: recovered::METADATA.to_owned(),
-            metadata: recovered::metadata(saved.doubtful),
-        })?;
-    }
-    writer.finish()?;
+    let message = "messages of channels that the file does not define; left out";
+    saved.remarks.add(Code::UnknownChannel, copier.unknown, message);
     Ok(())
 }

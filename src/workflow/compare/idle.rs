@@ -1,7 +1,10 @@
 //! Comparisons that say nothing of a change.
 
-use super::{Comparison, Verdict};
-use crate::remark::Code;
+use super::{Comparison, TransitionPair};
+use crate::{remark::Code, replay::PEAK_ERROR};
+
+/// What writing and reading a table changes an error by at most, rad or m.
+const WRITTEN: f64 = 1e-8;
 
 /// Why a comparison says nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,11 +19,17 @@ impl Comparison {
     /// Why it says nothing of a change; `None` if it does.
     pub fn idle(&self) -> Option<Idle> {
         let same = || self.remarks.as_slice().iter().any(|remark| remark.code == Code::SameRun);
-        match self.verdict {
-            _ if self.pairs.is_empty() && !(self.same_plan && self.unpaired.is_empty()) => Some(Idle::NoPair),
-            Verdict::Equal if same() => Some(Idle::SameRun),
-            _ => None,
+        if self.pairs.is_empty() && !(self.same_plan && self.unpaired.is_empty()) {
+            Some(Idle::NoPair)
+        } else {
+            (same() && self.is_unchanged()).then_some(Idle::SameRun)
         }
+    }
+
+    /// Whether no peak differs by more than a table's last digit.
+    fn is_unchanged(&self) -> bool {
+        let change = |pair: &TransitionPair| pair.changes.get(PEAK_ERROR).difference.unwrap_or(0.0);
+        self.pairs.iter().all(|pair| change(pair).abs() <= WRITTEN)
     }
 }
 

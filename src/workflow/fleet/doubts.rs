@@ -1,16 +1,36 @@
 //! Doubts about the runs of a history: when they were, how they were analysed, and what their machines are called.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 
 use super::{
     dated::named_otherwise,
     run::{Run, date, days},
     scan::FITTED,
+    store::begun as begun_scans,
 };
-use crate::remark::{Code, Remarks};
+use crate::{
+    remark::{Code, Remarks},
+    text::{shell_argument, shell_word},
+};
 
 fn name(run: &Run) -> &str {
     run.log.rsplit('/').next().unwrap_or_default()
+}
+
+/// Says which scans began and did not end: what they did not come to is missing.
+pub(super) fn begun(root: &Path, remarks: &mut Remarks) {
+    let begun = begun_scans(root);
+    let sources: Vec<String> = begun.iter().map(|source| shell_word(source)).collect();
+    let message = format!(
+        "a scan began and did not end, so that logs may be missing; if none is under way, `hydrotrace fleet scan {} --into {}` with \
+         the options that it had goes on",
+        sources.join(" "),
+        shell_argument(root)
+    );
+    remarks.add(Code::NotClosed, sources.len() as u64, message);
 }
 
 /// A run that nobody knows the time of has no place in a history.

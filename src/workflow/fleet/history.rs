@@ -116,6 +116,7 @@ impl History {
         let mut history = Self::default();
         let message = "a scan was ended before its last step; `hydrotrace fleet scan` finishes it";
         history.remarks.add(Code::NotClosed, u64::from(is_unfinished(root)), message);
+        doubts::begun(root, &mut history.remarks);
         let (mut runs, mut starts, mut lags) = (Vec::new(), Vec::new(), Vec::new());
         for part in &found {
             for (name, columns, rows) in [

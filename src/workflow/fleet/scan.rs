@@ -125,7 +125,14 @@ pub fn scan(
 ) -> Result<Scanned, FleetFailure> {
     let beside = Beside { gates: &Gates::default(), drawn: false, again: &|_| false, analysed: &|_, _| () };
     let (found, tables_left, empty) = sources(&inputs.sources)?;
-    let mut scanned = Scanned { tables_left, ..scan_these(found, inputs, &beside, seen)? };
+    let store = Store::open(&inputs.into)?;
+    let sources: Vec<String> = inputs.sources.iter().map(|source| from_anywhere(source)).collect();
+    store.begin(&sources)?;
+    let (scanned, ended) = scan_into(&store, found, inputs, &beside, seen)?;
+    if !ended {
+        store.end(&sources)?;
+    }
+    let mut scanned = Scanned { tables_left, ..scanned };
     for message in empty {
         scanned.remarks.add(Code::MissingFile, 1, message);
     }
@@ -139,7 +146,25 @@ pub(in crate::workflow) fn scan_these(
     beside: &Beside<'_>,
     seen: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
 ) -> Result<Scanned, FleetFailure> {
-    let store = Store::open(&inputs.into)?;
+    Ok(scan_into(&Store::open(&inputs.into)?, found, inputs, beside, seen)?.0)
+}
+
+/// A source as it is called in any folder.
+fn from_anywhere(source: &str) -> String {
+    match std::path::absolute(source) {
+        Ok(path) if !source.contains("://") => path.to_string_lossy().into_owned(),
+        _ => source.to_owned(),
+    }
+}
+
+/// What a scan of these logs did, and whether `seen` ended it.
+fn scan_into(
+    store: &Store,
+    found: Vec<Source>,
+    inputs: &Inputs,
+    beside: &Beside<'_>,
+    seen: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+) -> Result<(Scanned, bool), FleetFailure> {
     let mut held = known(store.root())?;
     let analysis_id = own_analysis_id(inputs);
     // A run that was fitted, too, tells all that one tells that was not.
@@ -186,7 +211,7 @@ pub(in crate::workflow) fn scan_these(
         let old: Vec<&Known> =
             old.iter().filter_map(|log| held.get(log.source.path.to_string_lossy().as_ref())).collect();
         let moved = !old.is_empty();
-        write(&store, rows, &old)?;
+        write(store, rows, &old)?;
         if moved {
             // Rows that stayed lie in other parts now.
             held = known(store.root())?;
@@ -195,7 +220,7 @@ pub(in crate::workflow) fn scan_these(
             break;
         }
     }
-    Ok(scanned)
+    Ok((scanned, ended.into_inner()))
 }
 
 /// The analysis, with all that rows depend on beside the log.

@@ -5,6 +5,7 @@
 //! was staged without a journal is thrown away. So each row is there once, whenever a process is killed.
 
 use std::{
+    collections::BTreeSet,
     fs::{self, File},
     io::Write,
     path::{Path, PathBuf},
@@ -19,6 +20,7 @@ const SCHEMA: &str = "schema=1";
 const LOCK: &str = ".lock";
 const STAGED: &str = ".staged";
 const JOURNAL: &str = ".journal.json";
+const BEGUN: &str = ".begun.json";
 
 /// Where rows lie: the month of the run, and a sixteenth of the machines. Days would make more files than rows.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -104,6 +106,13 @@ pub(super) fn is_unfinished(root: &Path) -> bool {
     root.join(JOURNAL).exists()
 }
 
+/// The sources of scans that began and did not end: the dataset may lack logs of theirs.
+pub(super) fn begun(root: &Path) -> BTreeSet<String> {
+    let text = input_file::read_to_string(&root.join(BEGUN)).unwrap_or_default();
+    // It appears whole or not at all.
+    serde_json::from_str(&text).unwrap_or_default()
+}
+
 impl Store {
     /// Opens the dataset in a folder, which is made if it is not there, and does what a killed process left to do.
     pub(super) fn open(root: &Path) -> Result<Self, FleetFailure> {
@@ -131,6 +140,37 @@ impl Store {
         &self.root
     }
 
+    /// Notes that a scan of these sources begins, until [`Self::end`] takes that back.
+    pub(super) fn begin(&self, sources: &[String]) -> Result<(), FleetFailure> {
+        let mut begun = begun(&self.root);
+        begun.extend(sources.iter().cloned());
+        self.note_begun(&begun)
+    }
+
+    /// Takes back that a scan of these sources began; those of other scans stay.
+    pub(super) fn end(&self, sources: &[String]) -> Result<(), FleetFailure> {
+        let mut begun = begun(&self.root);
+        begun.retain(|source| !sources.contains(source));
+        self.note_begun(&begun)
+    }
+
+    fn note_begun(&self, begun: &BTreeSet<String>) -> Result<(), FleetFailure> {
+        let path = self.root.join(BEGUN);
+        if begun.is_empty() {
+            return removed(&path);
+        }
+        self.put_whole(&path, &serde_json::to_string(begun).unwrap_or_default())
+    }
+
+    /// Writes a file that appears whole or not at all.
+    fn put_whole(&self, path: &Path, text: &str) -> Result<(), FleetFailure> {
+        let staged = self.root.join(STAGED);
+        fs::create_dir_all(&staged).map_err(FleetFailure::file("make the folder", &staged))?;
+        let before = staged.join("whole");
+        write(&before, text.as_bytes())?;
+        fs::rename(&before, path).map_err(FleetFailure::file("move", &before))
+    }
+
     /// Puts files in their places and removes others, all or nothing.
     pub(super) fn change(&self, put: &[(String, Vec<u8>)], remove: &[String]) -> Result<(), FleetFailure> {
         let staged = self.root.join(STAGED);
@@ -143,10 +183,7 @@ impl Store {
         }
         let kept = |path: &&String| put.iter().all(|(place, _)| place != *path);
         journal.remove = remove.iter().filter(kept).cloned().collect();
-        let text = serde_json::to_string(&journal).unwrap_or_default();
-        let (before, after) = (staged.join("journal"), self.root.join(JOURNAL));
-        write(&before, text.as_bytes())?;
-        fs::rename(&before, &after).map_err(FleetFailure::file("move", &before))?;
+        self.put_whole(&self.root.join(JOURNAL), &serde_json::to_string(&journal).unwrap_or_default())?;
         self.done(&journal)
     }
 
@@ -163,14 +200,18 @@ impl Store {
             }
         }
         for place in &journal.remove {
-            let path = self.root.join(place);
-            match fs::remove_file(&path) {
-                Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
-                removed => removed.map_err(FleetFailure::file("remove", &path))?,
-            }
+            removed(&self.root.join(place))?;
         }
         let path = self.root.join(JOURNAL);
         fs::remove_file(&path).map_err(FleetFailure::file("remove", &path))
+    }
+}
+
+/// Removes a file that may be gone.
+fn removed(path: &Path) -> Result<(), FleetFailure> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
+        removed => removed.map_err(FleetFailure::file("remove", path)),
     }
 }
 

@@ -45,6 +45,15 @@ pub fn gather(inputs: &Inputs) -> Result<Gathered, JoinFailure> {
     let log = files.scan()?;
     let mut run = log.read(&read)?;
     let [from_s, to_s] = run.measured.span_s().unwrap_or_default();
+    if let Some(planned_s) =
+        run.planned.span_s().filter(|[begins_s, ends_s]| *begins_s > to_s || *ends_s < from_s)
+    {
+        return Err(JoinFailure::Apart {
+            planned_s,
+            measured_s: [from_s, to_s],
+            output: inputs.output.clone(),
+        });
+    }
     let (files, messages, unknown) = log.gather(&inputs.output)?;
     run.remarks.add(
         Code::UnknownChannel,

@@ -22,6 +22,7 @@ use crate::{
     log::{Addition, LogError, LogFiles, PlanSample, ReadOptions, Sides, SignalRole, TimeBase, Topics},
     remark::Code,
     series::{Series, Track},
+    text::shell_argument,
     units::{DEGREE_RAD, nanoseconds},
 };
 use place::Plan;
@@ -119,6 +120,13 @@ pub enum JoinFailure {
          --hydraulics and give a plan in lengths; `hydrotrace export PLAN --hydraulics FILE --as cylinders` makes one"
     )]
     Cylinders,
+    #[error(
+        "the plan covers {:.2} to {:.2} s, the measurement {:.2} to {:.2} s: they have no time in common, as of two clocks, and no \
+         report could be made; `hydrotrace join MEASUREMENT --plan PLAN --at SECONDS -o {}` puts the plan's first sample at \
+         SECONDS of the measurement",
+        planned_s[0], planned_s[1], measured_s[0], measured_s[1], shell_argument(output)
+    )]
+    Apart { planned_s: [f64; 2], measured_s: [f64; 2], output: PathBuf },
     #[error("the plan in {} lasts {duration_s:.0} s, {LONGEST_S} s are the most", plan.display())]
     TooLong { plan: PathBuf, duration_s: f64 },
     #[error("--at {at_s} puts the plan at {at_s:.2} to {:.2} s, outside the measurement, {:.2} to {:.2} s",

@@ -44,7 +44,7 @@ impl Recording<'_> {
                 if let Some(objects) = &mut self.objects {
                     objects.settle();
                 }
-                let stream = stream.named(name.into_owned());
+                let stream = stream.named(name.into_owned()).after(self.closed.last());
                 self.progress.joints = stream.understood().joints.len();
                 let log = stream.log(self.next_part()?)?;
                 self.open = Some((stream, log));

@@ -156,6 +156,16 @@ fn a_run_given_twice_counts_once() {
 }
 
 #[test]
+fn a_run_and_its_own_table_are_one_run() {
+    let table = RUNS.path().join("lag-deg.csv");
+    let run = hydrotrace(RUNS.path(), &["export", "lag.mcap", "--degrees", "-o", "lag-deg.csv"]);
+    assert!(table.exists(), "{}", stderr(&run));
+    let text = stdout(&hydrotrace(RUNS.path(), &["compare", "lag.mcap", "lag-deg.csv"]));
+    assert!(text.contains("Both sides are one and the same run"), "{text}");
+    assert!(!text.contains("chance could explain"), "{text}");
+}
+
+#[test]
 fn exit_code_1_says_which_log_and_what_the_runs_have() {
     let run = hydrotrace(samples(), &["compare", SOUND, "no-such.mcap"]);
     assert_eq!((run.status.code(), run.stdout.len()), (Some(1), 0));

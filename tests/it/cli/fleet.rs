@@ -247,6 +247,28 @@ fn what_is_wrong_with_a_question_is_said() {
     );
 }
 
+#[test]
+fn answers_say_that_a_scan_did_not_end_until_it_does() {
+    use hydrotrace::workflow::fleet::{Inputs, scan};
+    let folder = fleet(4, 6);
+    let logs = folder.path().join("logs").to_string_lossy().into_owned();
+    let inputs = Inputs { sources: vec![logs], into: folder.path().join("data"), ..Inputs::default() };
+    scan(&inputs, &|_| std::ops::ControlFlow::Break(())).unwrap();
+    json(folder.path(), "fleet scan logs/M00/00.mcap --into data");
+    for line in [
+        "gate data --max-drift-delay-ms 30 --allow-empty",
+        "drift data",
+        "worst data",
+        "effect data --machine M00 --at 2026-03-03",
+    ] {
+        let (code, out, _) = said(&run_line(folder.path(), &format!("fleet {line}")));
+        assert!(code == 3 && out.contains("/logs --into data` with the options"), "{line}: {code} {out}");
+    }
+    json(folder.path(), "fleet scan logs --into data");
+    let gate = "fleet gate data --max-drift-delay-ms 30 --allow-empty";
+    assert_eq!(said(&run_line(folder.path(), gate)).0, 0);
+}
+
 #[cfg(unix)]
 #[test]
 fn a_scan_that_is_killed_and_repeated_holds_every_row_once() {

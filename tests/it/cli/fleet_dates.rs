@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::support::{
     clean,
-    fleet::{cells, files, small_log},
+    fleet::{cells, files, log, small_log, smooth},
     hold_to_schema, json, run_line, said, timed,
 };
 
@@ -14,7 +14,7 @@ use crate::support::{
 fn table(day: u32) -> String {
     timed("t_s,boom_planned_rad,boom_measured_rad", (600, 0.02), |t_s| {
         let at = |late_s: f64| {
-            let stroke = |from_s: f64| crate::support::fleet::smooth((t_s - from_s - late_s) / 2.0);
+            let stroke = |from_s: f64| smooth((t_s - from_s - late_s) / 2.0);
             0.2 * stroke(2.0) - 0.2 * stroke(6.0)
         };
         format!("{t_s:.2},{:.6},{:.6}", at(0.0), at(0.1 + 0.015 * f64::from(day)))
@@ -49,6 +49,22 @@ fn tables_that_count_from_zero_have_the_dates_of_their_names_and_those_without_a
     let of_day = |path: &std::path::PathBuf| path.to_string_lossy().contains("date=20");
     assert!(!files(&data).keys().any(of_day), "no date is made up");
     assert_eq!(cells(&data, "remarks", "code").iter().filter(|code| *code == "undated").count(), 3);
+}
+
+#[test]
+fn a_clock_that_is_set_on_the_way_dates_its_run() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir_all(folder.path().join("logs/M1")).unwrap();
+    let t_s: Vec<f64> = (0..500).map(|k| 0.02 * f64::from(k)).collect();
+    let boom = |late_s: f64| vec![t_s.iter().map(|t| smooth((t - 2.0 - late_s) / 2.0)).collect()];
+    // The first second counts from 20 s after the start of the controller.
+    let stamps: Vec<f64> =
+        t_s.iter().map(|t| if *t < 1.0 { t + 20.0 - 1_772_352_000.0 } else { *t }).collect();
+    let bytes = log("M1", 0, &["boom"], &stamps, [&boom(0.0), &boom(0.2)]);
+    fs::write(folder.path().join("logs/M1/run.mcap"), bytes).unwrap();
+    run_line(folder.path(), "fleet scan logs --into data");
+    let paths: Vec<_> = files(&folder.path().join("data")).into_keys().collect();
+    assert!(paths.iter().all(|path| path.to_string_lossy().contains("date=2026-03")), "{paths:?}");
 }
 
 #[test]

@@ -82,3 +82,21 @@ fn a_plan_and_a_measurement_in_two_files_become_one_log_by_the_printed_lines() {
     let (code, _, why) = args("hydrotrace fit 'a b/seen.csv' -o alone.toml");
     assert!(code == 1 && why.contains("`hydrotrace join 'a b/seen.csv' OTHER -o whole.mcap`"), "{why}");
 }
+
+#[test]
+fn a_plan_and_a_measurement_of_two_clocks_are_not_joined_as_they_are() {
+    let folder = scratch();
+    let at = folder.path();
+    for (name, rows, column) in [("plan", 0..800, "boom_set_deg"), ("seen", 0..800, "boom_act_deg")] {
+        let text = table(rows, &[column]);
+        let text = if name == "seen" { text.replace("\n17720", "\n17721") } else { text };
+        fs::write(at.join("part.csv"), text).unwrap();
+        run_line(at, &format!("import part.csv -o {name}.mcap"));
+    }
+    let (code, _, why) = said(&run_line(at, "join plan.mcap seen.mcap -o whole.mcap"));
+    assert!(code == 1 && why.contains("--plan PLAN --at SECONDS -o whole.mcap`"), "{code} {why}");
+    assert!(!at.join("whole.mcap").exists());
+    let (code, _, why) = said(&run_line(at, "join seen.mcap --plan plan.mcap --at 0 -o whole.mcap"));
+    assert!(code == 0 || code == 3, "{code} {why}");
+    assert_eq!(json(at, "report whole.mcap")["transitions"].as_array().unwrap().len(), 2);
+}

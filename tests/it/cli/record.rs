@@ -259,6 +259,20 @@ fn a_header_that_changes_before_the_columns_are_settled_loses_no_row() {
 }
 
 #[test]
+fn a_header_after_midnight_is_of_the_day_that_came_and_rows_are_counted_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "time,boom_set_deg,boom_act_deg\n23:59:59.0,0,0\n23:59:59.5,1,0.5\n23:59:59.5,1,0.5\n00:00:00.0,2,1.5\n\
+                time,boom_set_deg,boom_act_deg,arm_set_deg,arm_act_deg\n00:00:00.5,3,2.5,1,1\n00:00:01.0,4,3.5,1,1\n\
+                00:00:01.5,5,4.5,1,1\n";
+    let later = (4..12).map(|k| format!("00:00:{k:02}.0,5,5,1,1\n")).collect::<String>();
+    let (code, out, error) = recorded(folder.path(), &format!("{text}{later}00:00:11.0,5,5,1,1\n"), &[]);
+    assert!(code == 3 && out.matches("duplicate-stamp x2").count() == 1, "{out}{error}");
+    let logs = ["report", "--json", "run.mcap", "run-2.mcap"];
+    let found: Value = serde_json::from_str(&said(&hydrotrace(folder.path(), &logs)).1).unwrap();
+    assert!((found["source"]["duration_s"].as_f64().unwrap() - 12.0).abs() < 1e-6, "{found:#}");
+}
+
+#[test]
 fn a_guess_is_a_remark_of_a_recording_too_and_a_number_that_is_none_loses_no_line() {
     let folder = tempfile::tempdir().unwrap();
     let text = trace("t,boom_set_mm,boom_act_mm", 1000.0, ",", 1000.0);

@@ -159,6 +159,30 @@ fn a_cut_log_is_recovered_with_what_the_cut_chunk_still_holds() {
 }
 
 #[test]
+fn parts_and_bags_are_recovered_into_one_log_and_nothing_is_no_log() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    std::fs::create_dir(at("bag")).unwrap();
+    std::fs::copy(CUT, at("bag/run_0.mcap")).unwrap();
+    // The next part had no byte on the disk yet.
+    std::fs::write(at("bag/run_1.mcap"), "").unwrap();
+    for logs in [vec![at("bag")], vec![at("bag/run_1.mcap"), at("bag/run_0.mcap")]] {
+        let logs: Vec<&str> = logs.iter().map(String::as_str).collect();
+        let run = hydrotrace(&[&["recover", "-o", &at("saved.mcap")], &logs[..]].concat());
+        let out = stdout(&run);
+        assert_eq!(run.status.code(), Some(3), "{}", stderr(&run));
+        assert!(out.starts_with("6948 messages") && out.contains("run_1.mcap is not an MCAP file"), "{out}");
+        std::fs::remove_file(at("saved.mcap")).unwrap();
+    }
+    let whole = std::fs::read(CUT).unwrap();
+    std::fs::write(at("stub.mcap"), &whole[..300]).unwrap();
+    let run = hydrotrace(&["recover", &at("stub.mcap"), "-o", &at("saved.mcap")]);
+    assert_eq!(run.status.code(), Some(1), "{}", stdout(&run));
+    assert!(stderr(&run).contains("nothing is left to save"), "{}", stderr(&run));
+    assert!(!std::path::Path::new(&at("saved.mcap")).exists());
+}
+
+#[test]
 fn info_says_what_a_report_would_use_even_where_none_can_be_made() {
     let run = hydrotrace(&["info", CLEAN]);
     assert_eq!(run.status.code(), Some(0));

@@ -326,7 +326,7 @@ fn recover_keeps_the_messages_of_chunks_whose_checksum_does_not_hold_and_says_wh
         }
         let stored = store(&[("damaged.mcap", &file_of(&log, &chunks))]);
         let output = stored.folder.path().join("saved.mcap");
-        let saved = hydrotrace::log::recover(&stored.paths[0], &output).unwrap();
+        let saved = hydrotrace::log::recover(&stored.paths, &output).unwrap();
         assert_eq!((saved.messages, saved.doubtful, saved.dropped_blocks), (100, 20, 0), "{compression}");
         let remark = saved.remarks.as_slice().iter().find(|one| one.code == Code::DamagedChunk).unwrap();
         assert_eq!(remark.count, 20);

@@ -124,7 +124,7 @@ fn indexed(bytes: &[u8]) -> Messages {
 
 fn recovered(path: &Path) -> Messages {
     let saved = path.with_extension("saved");
-    match hydrotrace::log::recover(path, &saved) {
+    match hydrotrace::log::recover(&[path.to_owned()], &saved) {
         Ok(_) => streamed(&std::fs::read(saved).unwrap(), true),
         Err(_) => Messages::new(),
     }
