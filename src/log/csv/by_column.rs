@@ -15,6 +15,11 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
     if text.trim_ascii_start().first() != Some(&b'{') {
         return None;
     }
+    let lines = text.trim_ascii().splitn(2, |byte| *byte == b'\n').collect::<Vec<_>>();
+    // An object a line is another form.
+    if lines.len() > 1 && parsed::<Map<String, Value>>(lines[0]).is_some() {
+        return None;
+    }
     let document: Map<String, Value> = parsed(text)?;
     let rows = split(&document).or_else(|| by_columns(&document)).or_else(|| within(document))?;
     let mut lines = JsonLines::default();

@@ -159,9 +159,9 @@ pub(in crate::log) fn says_side(part: &str) -> bool {
 pub fn read_csv_bytes(name: &str, bytes: &[u8], options: &CsvOptions) -> Result<CsvRun, CsvError> {
     let text = text::of_bytes(name, bytes)?;
     let mut remarks = Remarks::default();
-    let table = objects::as_table(&text, &mut remarks)
+    let table = by_column::as_table(&text)
+        .or_else(|| objects::as_table(&text, &mut remarks))
         .or_else(|| echoed::as_table(&text))
-        .or_else(|| by_column::as_table(&text))
         .or_else(|| printed::as_table(&text))
         .or_else(|| named_values::as_table(&text))
         .or_else(|| dataset::as_table(&text));

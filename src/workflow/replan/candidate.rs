@@ -173,8 +173,7 @@ impl Maker<'_> {
     }
 
     fn asks_too_much(&self, plan: &Series) -> bool {
-        let asked = self.fit.shared.as_ref().and_then(|shared| shared.asked(plan));
-        asked.is_some_and(|(asked, _)| asked > 1.0)
+        asks_too_much(self.fit, plan)
     }
 
     /// Where joints were held back, the plans that ask for no more than they share, if there are such: no correction makes up for that,
@@ -201,6 +200,12 @@ impl Maker<'_> {
         };
         warp.run(fit, plan, history.newest()?)
     }
+}
+
+/// Whether a plan asks for more than its joints share.
+pub(super) fn asks_too_much(fit: &Fit, plan: &Series) -> bool {
+    let asked = fit.shared.as_ref().and_then(|shared| shared.asked(plan));
+    asked.is_some_and(|(asked, _)| asked > 1.0)
 }
 
 /// The first unless another is expected to be better by enough.

@@ -53,12 +53,12 @@ use super::fit;
 use crate::{
     fit::{Fit, JointFit},
     log::Recording,
-    plan::{PlanEvaluation, Setup},
+    plan::{PlanEvaluation, Setup, Timing},
     remark::Code,
     task::{Ceilings, Objective, Objectives},
     workflow::{names::told_apart, plan::Shaping},
 };
-use candidate::{Candidate, Maker, Sampled, decided};
+use candidate::{Candidate, Maker, Sampled, asks_too_much, decided};
 use correctable::correctable;
 use history::History;
 use last::Last;
@@ -219,11 +219,25 @@ fn searched(
         found = timings(shape::roomy(ceilings))?;
         found.evaluations += before;
     }
+    if asks_too_much(fit, &last.plan) {
+        found.front = within_shared(fit, &setup, found.front)?;
+    }
     let best = &found.front[..found.front.len().min(CANDIDATES)];
     let known = start.as_deref().filter(|_| last.shaping() == Shaping::Timing);
     let plans = shape::shaped(&setup, best, (start.as_deref(), known), &ceilings, shaping)?;
     let retime::Timings { front, evaluations } = found;
     Ok(Search { front, plans, shaping, evaluations, ceilings, held, evaluation })
+}
+
+/// Timings in their order, those first that ask for no more than joints share.
+fn within_shared(fit: &Fit, setup: &Setup, front: Vec<Timing>) -> Result<Vec<Timing>, ReplanFailure> {
+    let (mut within, mut beyond) = (Vec::new(), Vec::new());
+    for timing in front {
+        let plan = sampled(setup, &setup.motion(&setup.times_s(&timing.interval_s))?)?;
+        if asks_too_much(fit, &plan) { beyond.push(timing) } else { within.push(timing) }
+    }
+    within.extend(beyond);
+    Ok(within)
 }
 
 /// Plans to look at with their commands: the last one first.

@@ -373,7 +373,6 @@ fn a_negative_limit_is_refused_in_its_own_words() {
     for (words, expected) in [
         ("report a.mcap --max-rms-deg -1", "is not a non-negative"),
         ("compare a.mcap b.mcap --max-p -1", "is not a probability from 0 to 1"),
-        ("join a.mcap --plan b.mcap -o c.mcap --at -1", "is not a non-negative"),
     ] {
         let (code, _, error) = said(&hydrotrace(Path::new("."), words));
         assert!(code == 2 && error.contains(expected), "{words}: {error}");
