@@ -250,9 +250,10 @@ fn margins(evaluation: &PlanEvaluation, joints: &[String]) -> [Section; 2] {
         nearest(evaluation).into_iter().take(NEAREST.max(evaluation.broken().len())).collect();
     let listed_position = nearest.iter().any(|margin| margin.limit == Limit::Position);
     let listed = nearest.into_iter().map(|margin| {
+        let value = shown(margin.limit, margin.kind, margin.value);
         vec![
             subject(margin, joints),
-            shown(margin.limit, margin.kind, margin.value),
+            value,
             allowed(margin),
             percent(margin.share),
             format!("{:.2}", margin.t_s),
@@ -348,11 +349,12 @@ fn mended(margin: &Margin, nearest: &PlanEvaluation) -> Option<String> {
              stays between them on its way"
         )),
         Limit::Torque | Limit::RodForce => Some(format!(
-            "that is {}, and no more time mends what the weight takes at rest: less payload, another posture or a wider limit does",
+            "that is {}{after}, and no more time mends what the weight takes at rest: less payload, another posture or a wider limit \
+             does",
             if before < after {
-                format!("between key points {before} and {after}")
+                format!("between key points {before} and ")
             } else {
-                format!("at key point {after}")
+                "at key point ".to_owned()
             }
         )),
         _ => None,

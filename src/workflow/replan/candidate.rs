@@ -202,10 +202,13 @@ impl Maker<'_> {
     }
 }
 
+/// A plan that asks for this many times what its joints share, at an instant, hardly holds them back.
+const BRIEFLY: f64 = 1.1;
+
 /// Whether a plan asks for more than its joints share.
 pub(super) fn asks_too_much(fit: &Fit, plan: &Series) -> bool {
     let asked = fit.shared.as_ref().and_then(|shared| shared.asked(plan));
-    asked.is_some_and(|(asked, _)| asked > 1.0)
+    asked.is_some_and(|(asked, _)| asked > BRIEFLY)
 }
 
 /// The first unless another is expected to be better by enough.
