@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use super::{
+    broken::over_ceilings,
     motion::{motion_charts, path},
-    tables::{nearest_lines, over_ceilings},
+    tables::nearest_lines,
 };
 use crate::{
     render::kit::{argument, command, page::choice::Choice},

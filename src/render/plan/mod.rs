@@ -1,5 +1,6 @@
 //! What was planned.
 
+mod broken;
 mod choices;
 mod degrees;
 mod figures;
@@ -9,13 +10,14 @@ mod page;
 mod rows;
 mod tables;
 
+pub(crate) use broken::{broken_lines, ceiling_lines};
 pub(crate) use choices::Courses;
 pub(super) use figures::front_figures;
 pub(crate) use figures::{figures, motion_figures};
 pub(super) use front::front;
 pub(crate) use page::{judged_page, page};
 pub use rows::limit_cell;
-pub(crate) use tables::{broken_lines, ceiling_lines, document, judged_document};
+pub(crate) use tables::{document, judged_document};
 
 use crate::{plan::Limit, series::JointKind, text::fixed, units::degrees_from_radians};
 

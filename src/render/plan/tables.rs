@@ -1,8 +1,9 @@
 //! Plans as tables.
 
 use super::{
+    broken::TIGHT,
     degrees::degrees,
-    rows::{limit_cell, nearest, percent, plans, row, subject},
+    rows::{nearest, percent, plans, row, subject},
     shown,
 };
 use crate::{
@@ -14,8 +15,6 @@ use crate::{
     workflow::plan::{Options, Planned, Shaped},
 };
 
-/// A limit or an interval used more than this binds.
-const TIGHT: f64 = 0.999;
 /// Margins listed.
 const NEAREST: usize = 6;
 
@@ -45,11 +44,9 @@ pub(crate) fn document(
         rows.push(row("by times alone", &shaped.timing, &planned.joints));
     }
     rows.push(row("chosen", &planned.chosen, &planned.joints));
-    let longer = (planned.fastest_converged == Some(false)).then(|| {
-        Sentence::advice(
-            "The fastest plan was still becoming faster when the search ended: allow more --evaluations.",
-        )
-    });
+    let growing =
+        "The fastest plan was still becoming faster when the search ended: allow more --evaluations.";
+    let longer = (planned.fastest_converged == Some(false)).then(|| Sentence::advice(growing));
     let rules: Vec<&str> = Rule::all().filter(|rule| *rule != Rule::Weights).map(Rule::name).collect();
     let curve = if planned.shaped.is_none() && planned.no_shape.is_none() {
         " With --shape free the curve between the key points is sought, too: it is faster, or smoother."
@@ -125,17 +122,19 @@ fn shortest(planned: &Planned) -> Option<String> {
 /// What a free shape gained, where one was sought.
 fn shape(planned: &Planned) -> Option<String> {
     let Some(Shaped { timing, pieces }) = &planned.shaped else {
-        return planned.no_shape.map(|why| match why {
-            NoShape::TooManyIntervals { found, most } => format!(
-                "Its shape is that of its times: {found} intervals are more than the {most} that a free shape takes \
-                 in so many pieces."
-            ),
-            NoShape::Broken(margin) => format!(
-                "Its shape is that of its times: the free shape breaks {}, which slowing down does not mend.",
-                subject(&margin, &planned.joints)
-            ),
-            NoShape::NoGain => "Its shape is that of its times: a free shape gains nothing by this rule.".to_owned(),
+        let why = planned.no_shape.map(|why| match why {
+            NoShape::TooManyIntervals { found, most } => {
+                format!(
+                    "{found} intervals are more than the {most} that a free shape takes in so many pieces."
+                )
+            }
+            NoShape::Broken(margin) => {
+                let what = subject(&margin, &planned.joints);
+                format!("the free shape breaks {what}, which slowing down does not mend.")
+            }
+            NoShape::NoGain => "a free shape gains nothing by this rule.".to_owned(),
         });
+        return why.map(|why| format!("Its shape is that of its times: {why}"));
     };
     let change = |k: &Objective| {
         let (was, is) = (timing.objectives[*k], planned.chosen.objectives[*k]);
@@ -313,94 +312,4 @@ fn allowed(margin: &Margin) -> String {
         (Limit::Position, false) => format!(">= {most}"),
         _ => most,
     }
-}
-
-/// What the nearest timing of an infeasible task breaks, a line each, the worst first.
-pub(crate) fn broken_lines(joints: &[String], longest_s: f64, nearest: &PlanEvaluation) -> Vec<String> {
-    let lines = nearest.broken().into_iter().map(|margin| {
-        format!(
-            "{} is {} at {:.2} s, {} is allowed: {} % beyond it",
-            subject(margin, joints),
-            shown(margin.limit, margin.kind, margin.value),
-            margin.t_s,
-            shown(margin.limit, margin.kind, margin.allowed),
-            percent(margin.share - 1.0)
-        )
-    });
-    let mut lines: Vec<String> = lines.collect();
-    lines.extend(longest(longest_s, nearest));
-    lines.extend(nearest.broken().first().and_then(|margin| mended(margin, nearest)));
-    if lines.is_empty() {
-        lines.push(format!(
-            "every limit holds but for rounding; {} is the nearest",
-            limit_cell(nearest, joints)
-        ));
-    }
-    lines
-}
-
-/// What mends a limit that no times do.
-fn mended(margin: &Margin, nearest: &PlanEvaluation) -> Option<String> {
-    let after = nearest.times_s.partition_point(|arrival_s| *arrival_s <= margin.t_s);
-    let [before, after] = [after.max(1), (after + 1).min(nearest.times_s.len())];
-    match margin.limit {
-        Limit::Position => Some(format!(
-            "the curve swings there between key points {before} and {after}: with dwell_s = 0.1 at both the arm stops at them, and \
-             stays between them on its way"
-        )),
-        Limit::Torque | Limit::RodForce => Some(format!(
-            "that is {}{after}, and no more time mends what the weight takes at rest: less payload, another posture or a wider limit \
-             does",
-            if before < after {
-                format!("between key points {before} and ")
-            } else {
-                "at key point ".to_owned()
-            }
-        )),
-        _ => None,
-    }
-}
-
-/// Intervals that the task allows no longer.
-fn longest(longest_s: f64, nearest: &PlanEvaluation) -> Option<String> {
-    let longest = nearest.interval_s.iter().filter(|s| **s > longest_s * TIGHT).count();
-    let all = nearest.interval_s.len();
-    let enough = nearest.slower().map_or(String::new(), |by| {
-        format!(": with intervals up to {:.0} s these limits are kept", (by * longest_s).ceil())
-    });
-    (longest > 0).then(|| {
-        format!(
-            "{longest} of {all} intervals have the longest duration allowed, {longest_s} s (interval_s){enough}"
-        )
-    })
-}
-
-/// What the nearest plan exceeds its ceilings by, a line each, and what holds it there.
-pub(crate) fn ceiling_lines(
-    ceilings: &Ceilings,
-    joints: &[String],
-    (longest_s, nearest): (f64, &PlanEvaluation),
-) -> Vec<String> {
-    let mut lines = over_ceilings(ceilings, nearest);
-    lines.extend(longest(longest_s, nearest));
-    let mut tight: Vec<&Margin> = nearest.margins.iter().filter(|margin| margin.share > TIGHT).collect();
-    tight.sort_by(|a, b| b.share.total_cmp(&a.share));
-    let tight: Vec<String> =
-        tight.iter().map(|margin| format!("{} at {:.2} s", subject(margin, joints), margin.t_s)).collect();
-    if !tight.is_empty() {
-        lines.push(format!("limits that hold it there: {}", tight.join(", ")));
-    }
-    lines
-}
-
-/// What a plan exceeds ceilings by, a line each.
-pub(super) fn over_ceilings(ceilings: &Ceilings, nearest: &PlanEvaluation) -> Vec<String> {
-    let over = |(k, ceiling): (Objective, f64)| {
-        let share = nearest.objectives[k] / ceiling;
-        let (name, found, asked) = (k.row().name, k.text(nearest.objectives[k]), k.text(ceiling));
-        (share > 1.0).then(|| {
-            format!("{name} {found}, the ceiling is {asked}: {:.1} % above it", 100.0 * (share - 1.0))
-        })
-    };
-    ceilings.known().filter_map(over).collect()
 }
