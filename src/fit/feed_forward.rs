@@ -4,6 +4,7 @@ use super::{
     estimate::{Estimate, Problem, Workspace},
     model::Model,
     parameters::{DEAD_TIME, LIMITS, POSITION_GAIN},
+    set_values::RINGS,
 };
 
 /// Dead time, s, and position gain, 1/s, where descents start beside the estimate with a feed-forward.
@@ -37,10 +38,14 @@ impl FeedForward {
             x
         });
         let without = other.search(std::iter::once(found.x.clone()).chain(anew), workspace);
-        if other.cost_at(&without.x, found.scale_rad, workspace) < before {
+        let model = other.model(&without.x);
+        if model.position_gain_1_s * model.lag_s() > RINGS {
+            // A loop that would ring explains any oscillation.
+            Self::Some
+        } else if other.cost_at(&without.x, found.scale_rad, workspace) < before {
             Self::None(without)
         } else if without.scale_rad < NEARLY * found.scale_rad {
-            Self::MayBeNone(Box::new(other.model(&without.x)))
+            Self::MayBeNone(Box::new(model))
         } else {
             Self::Some
         }

@@ -20,7 +20,7 @@ const SURELY_LATE_S: f64 = 0.08;
 
 /// A loop whose gain is larger than this by its lag rings: one that is calm has another structure, for which late set values
 /// would stand in.
-const RINGS: f64 = 0.8;
+pub(super) const RINGS: f64 = 0.8;
 
 /// Dead time where a descent starts, s.
 const DEAD_TIME_S: f64 = 0.08;
