@@ -82,6 +82,8 @@ fn joints(comparison: &Comparison, peaks: &[&Summary]) -> Option<String> {
     let unlike = |found: &[(Verdict, String)]| found.iter().any(|(verdict, _)| !alike(verdict));
     let some = by_runs && !of_peaks.is_empty() && of_peaks.len() < comparison.joints.len();
     let tested = by_runs || !alike(&Verdict::TooFew);
+    // Peaks that do what all do are said once.
+    let of_peaks = if by_runs || unlike(&of_peaks) { of_peaks } else { Vec::new() };
     let differ =
         some || tested && unlike(&of_peaks) || unlike(&of_delays) || !by_runs && !of_delays.is_empty();
     let named = [("peak error ", of_peaks), ("start delay ", of_delays)].map(|(what, found)| {
