@@ -223,13 +223,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
     if inputs.at_s.is_some() && (start_s > measured_s[1] || end_s < measured_s[0]) {
         return Err(JoinFailure::Outside { at_s: start_s, duration_s: to_s - from_s, measured_s });
     }
-    let rest_s = match sent {
-        Some(sent) => [
-            rest_s(sent, start_s, -1.0, RUN_LEAD_S.min(start_s - measured_s[0])),
-            rest_s(sent, end_s, 1.0, RUN_TAIL_S.min(measured_s[1] - end_s)),
-        ],
-        None => [0.0; 2],
-    };
+    let rest_s = sent.map_or([0.0; 2], |sent| rests_s(sent, [start_s, end_s], measured_s));
     // As logged if it differs from the made one, else as made: the log may be coarser.
     let otherwise = located.is_some_and(|found| !place::is_same(&found));
     let command = match (commanded, &plan.command, sent) {
@@ -284,6 +278,14 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         located,
         kinds: plan.planned.tracks.iter().map(Track::kind).collect(),
     })
+}
+
+/// How long the command rests before and after a plan, as far as is measured, s.
+fn rests_s(sent: &Series, [start_s, end_s]: [f64; 2], measured_s: [f64; 2]) -> [f64; 2] {
+    [
+        rest_s(sent, start_s, -1.0, RUN_LEAD_S.min(start_s - measured_s[0])),
+        rest_s(sent, end_s, 1.0, RUN_TAIL_S.min(measured_s[1] - end_s)),
+    ]
 }
 
 /// How long the command rests before or after an instant, s.
