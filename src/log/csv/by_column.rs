@@ -47,15 +47,14 @@ fn split(document: &Map<String, Value>) -> Option<Rows> {
     (rows.len() >= LEAST).then_some(rows)
 }
 
-/// Lists of one length, wherever in the document; those of other lengths are no columns.
+/// Lists of one length, the longest of which there are two, wherever in the document: shorter ones are of joints, and no columns.
 fn by_columns(document: &Map<String, Value>) -> Option<Rows> {
     let mut columns: Vec<(Vec<&str>, Vec<&Value>)> = Vec::new();
     gather(document, &mut Vec::new(), &mut columns);
     let count = |length: usize| columns.iter().filter(|(_, values)| values.len() == length).count();
-    let length =
-        columns.iter().map(|(_, values)| values.len()).max_by_key(|length| (count(*length), *length))?;
+    let length = columns.iter().map(|(_, values)| values.len()).filter(|length| count(*length) > 1).max()?;
     columns.retain(|(_, values)| values.len() == length);
-    if length < LEAST || columns.len() < 2 {
+    if length < LEAST {
         return None;
     }
     // What all are in says nothing of one.
@@ -144,6 +143,9 @@ mod tests {
         ] {
             assert_eq!(of(text).as_deref(), Some(expected), "{text}");
         }
+        let joints = r#""joints": ["a", "b", "c"], "kp": [1, 2, 3], "kd": [1, 2, 3]"#;
+        let beside = of(&format!(r#"{{"t": [0, 1, 2, 3], "q": [1, 2, 3, 4], {joints}}}"#)).unwrap();
+        assert!(beside.starts_with("\"q\",\"t\"\n\"1\",\"0\"\n"), "{beside}");
         let matrix = of(r#"{"t": [0, 1, 2], "q": [[1, 2], [3, 4], [5, 6]]}"#).unwrap();
         assert!(matrix.starts_with("\"q_1\",\"q_2\",\"t\"\n\"1\",\"2\",\"0\"\n"), "{matrix}");
         for other in [r#"{"t": 0, "q": [1, 2, 3]}"#, r#"{"a": [1, 2], "b": [1, 2]}"#, "{}", "[1]", "t,q"] {

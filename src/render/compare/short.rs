@@ -83,9 +83,9 @@ fn joints(comparison: &Comparison, peaks: &[&Summary]) -> Option<String> {
     let some = by_runs && !of_peaks.is_empty() && of_peaks.len() < comparison.joints.len();
     let tested = by_runs || !alike(&Verdict::TooFew);
     // Peaks that do what all do are said once.
-    let of_peaks = if by_runs || unlike(&of_peaks) { of_peaks } else { Vec::new() };
-    let differ =
-        some || tested && unlike(&of_peaks) || unlike(&of_delays) || !by_runs && !of_delays.is_empty();
+    let of_peaks = if by_runs || tested && unlike(&of_peaks) { of_peaks } else { Vec::new() };
+    let of_delay = if by_runs { unlike(&of_delays) } else { !of_delays.is_empty() };
+    let differ = some || unlike(&of_peaks) || of_delay;
     let named = [("peak error ", of_peaks), ("start delay ", of_delays)].map(|(what, found)| {
         let each: Vec<String> = found.into_iter().map(|(_, text)| text).collect();
         (!each.is_empty()).then(|| what.to_owned() + &each.join(", "))

@@ -169,25 +169,17 @@ impl Maker<'_> {
 
     /// Whether joints were held back in the last run by what they share: of how they go where that is enough the run says nothing.
     fn starved(&self) -> bool {
-        self.asks_too_much(&self.last.plan)
-    }
-
-    fn asks_too_much(&self, plan: &Series) -> bool {
-        asks_too_much(self.fit, plan)
+        asks_too_much(self.fit, &self.last.plan)
     }
 
     /// Where joints were held back, the plans that ask for no more than they share, if there are such: no correction makes up for that,
     /// and what is expected of other plans is of joints that are held back.
     pub(super) fn within_shared(&self, options: Vec<Sampled>) -> Vec<Sampled> {
-        let (within, beyond): (Vec<Sampled>, Vec<Sampled>) =
-            options.into_iter().partition(|(_, plan)| !self.asks_too_much(plan));
-        if within.is_empty() {
-            beyond
-        } else if self.starved() {
-            within
-        } else {
-            [within, beyond].concat()
+        let within = |option: &&Sampled| !asks_too_much(self.fit, &option.1);
+        if !self.starved() || !options.iter().any(|option| within(&option)) {
+            return options;
         }
+        options.iter().filter(within).cloned().collect()
     }
 
     /// What the newest run tells of another timing.

@@ -2,20 +2,29 @@
 
 use crate::support::{clean as done, json, run_line as hydrotrace, sample, stderr};
 
-#[test]
-fn another_command_of_the_same_plan_is_refused_with_its_share_at_a_given_time_too() {
+/// A folder with a plan and its run, and what these lines make of them.
+fn folder(lines: &[&str]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     std::fs::copy(sample("tasks/task-1.toml"), at.join("task-1.toml")).unwrap();
-    for line in [
+    let begun = [
         "plan task-1.toml --times 0,4.49,8.09,12.39,18.79,21.85 -o plan.mcap",
         "simulate plan.mcap -o run.mcap",
+    ];
+    for line in begun.iter().chain(lines) {
+        done(at, line);
+    }
+    folder
+}
+
+#[test]
+fn another_command_of_the_same_plan_is_refused_with_its_share_at_a_given_time_too() {
+    let folder = folder(&[
         "replan run.mcap --keep-plan --gain 0.5 -o half.mcap",
         "replan run.mcap --keep-plan -o all.mcap",
         "simulate half.mcap -o sent.mcap",
-    ] {
-        done(at, line);
-    }
+    ]);
+    let at = folder.path();
     for given in ["", " --at 2"] {
         let line =
             format!("join sent.mcap --planned /command/joint_states -o joined.mcap --plan all.mcap{given}");
@@ -31,19 +40,13 @@ fn another_command_of_the_same_plan_is_refused_with_its_share_at_a_given_time_to
 /// A PLC's set value is what was sent to it: the corrected command, which a table calls its plan.
 #[test]
 fn what_a_table_calls_its_plan_may_be_what_was_sent() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    std::fs::copy(sample("tasks/task-1.toml"), at.join("task-1.toml")).unwrap();
-    for line in [
-        "plan task-1.toml --times 0,4.49,8.09,12.39,18.79,21.85 -o plan.mcap",
-        "simulate plan.mcap -o run.mcap",
+    let folder = folder(&[
         "replan run.mcap --keep-plan -o next.mcap",
         "simulate next.mcap -o whole.mcap",
         "export whole.mcap --csv --planned /command/joint_states -o plc.csv",
         "join plc.csv --plan next.mcap -o joined.mcap",
-    ] {
-        done(at, line);
-    }
+    ]);
+    let at = folder.path();
     let [joined, whole] = ["joined", "whole"].map(|name| json(at, &format!("report {name}.mcap")));
     let peaks_rad = |report: &serde_json::Value| {
         let starts = report["transitions"].as_array().unwrap().iter();
