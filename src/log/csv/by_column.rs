@@ -2,7 +2,10 @@
 
 use serde_json::{Map, Value};
 
-use super::{lenient::parsed, objects::JsonLines};
+use super::{
+    lenient::parsed,
+    objects::{JsonLines, LISTS, listed},
+};
 
 /// Rows of a table at least.
 const LEAST: usize = 3;
@@ -21,12 +24,24 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
         return None;
     }
     let document: Map<String, Value> = parsed(text)?;
+    let joints = joints(&document);
     let rows = split(&document).or_else(|| by_columns(&document)).or_else(|| within(document))?;
     let mut lines = JsonLines::default();
-    for row in rows {
+    for mut row in rows {
+        let names_its_own = row.keys().any(|key| LISTS.contains(&key.to_lowercase().as_str()));
+        if let Some(joints) = joints.as_ref().filter(|_| !names_its_own) {
+            row.insert(LISTS[0].to_owned(), joints.clone());
+        }
         lines.gather_object(row);
     }
     Some(lines.table().into_bytes())
+}
+
+/// The names of joints that a document lists beside its table, for the lists in it.
+fn joints(document: &Map<String, Value>) -> Option<Value> {
+    let within = |value: &Value| value.as_object().and_then(joints);
+    let own = || listed(document).map(|names| names.into_iter().map(Value::from).collect());
+    own().or_else(|| document.values().find_map(within))
 }
 
 type Rows = Vec<Map<String, Value>>;
@@ -148,6 +163,13 @@ mod tests {
         assert!(beside.starts_with("\"q\",\"t\"\n\"1\",\"0\"\n"), "{beside}");
         let matrix = of(r#"{"t": [0, 1, 2], "q": [[1, 2], [3, 4], [5, 6]]}"#).unwrap();
         assert!(matrix.starts_with("\"q_1\",\"q_2\",\"t\"\n\"1\",\"2\",\"0\"\n"), "{matrix}");
+        for named in [
+            r#"{"joint_names": ["boom", "arm"], "t": [0, 1, 2], "q": [[1, 2], [3, 4], [5, 6]]}"#,
+            r#"{"meta": {"joints": ["boom", "arm"]}, "rows": [{"t": 0, "q": [1, 2]}, {"t": 1, "q": [3, 4]}, {"t": 2, "q": [5, 6]}]}"#,
+        ] {
+            let named = of(named).unwrap();
+            assert!(named.starts_with("\"arm q\",\"boom q\",\"t\"\n\"2\",\"1\",\"0\"\n"), "{named}");
+        }
         for other in [r#"{"t": 0, "q": [1, 2, 3]}"#, r#"{"a": [1, 2], "b": [1, 2]}"#, "{}", "[1]", "t,q"] {
             assert_eq!(of(other), None, "{other}");
         }

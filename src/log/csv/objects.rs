@@ -11,7 +11,7 @@ use super::{keys::NAMES, label::label, lenient::parsed, number::number};
 use crate::remark::{Code, Remarks};
 
 /// Keys of lists of the names of joints.
-const LISTS: [&str; 5] = ["name", "names", "joint_names", "joints", "joint"];
+pub(super) const LISTS: [&str; 5] = ["name", "names", "joint_names", "joints", "joint"];
 
 /// Keys and cells of an object.
 type Cells = Vec<(String, String)>;
@@ -270,7 +270,7 @@ fn published(mut object: Map<String, Value>) -> Map<String, Value> {
 }
 
 /// The names of joints that an object lists, for the lists beside them and in objects within.
-fn listed(object: &Map<String, Value>) -> Option<Vec<&str>> {
+pub(super) fn listed(object: &Map<String, Value>) -> Option<Vec<&str>> {
     let lists = object.iter().filter(|(key, _)| LISTS.contains(&key.to_lowercase().as_str()));
     let mut found = lists
         .filter_map(|(_, value)| value.as_array()?.iter().map(Value::as_str).collect::<Option<Vec<&str>>>());
