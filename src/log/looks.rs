@@ -69,7 +69,9 @@ pub(super) fn is_document(path: &Path, bytes: &[u8]) -> bool {
     let own = bytes.starts_with(b"{\n  \"format\": \"hydrotrace.");
     let text = String::from_utf8_lossy(bytes);
     let lists = text.contains('[') || text.contains("{\"0\":");
-    named && !own && text.trim_start().starts_with('{') && lists
+    let mut marks = text.split_whitespace().flat_map(str::chars);
+    let opens = [marks.next(), marks.next()];
+    named && !own && (opens[0] == Some('{') && lists || opens == [Some('['); 2])
 }
 
 /// Whether lines are numbers between blanks, as many in each.

@@ -1,4 +1,4 @@
-//! JSON documents that hold a table: a list for each column, rows beside the names of their columns, or rows within an object.
+//! JSON documents that hold a table: a list for each column, rows beside the names of their columns, rows within an object, or rows alone.
 
 use serde_json::{Map, Value};
 
@@ -15,8 +15,10 @@ const WIDEST: usize = 1000;
 
 /// The text of the table that a document holds; `None` if it holds none.
 pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
-    if text.trim_ascii_start().first() != Some(&b'{') {
-        return None;
+    match text.trim_ascii_start().first()? {
+        b'{' => {}
+        b'[' => return bare(text),
+        _ => return None,
     }
     let lines = text.trim_ascii().splitn(2, |byte| *byte == b'\n').collect::<Vec<_>>();
     // An object a line is another form.
@@ -35,6 +37,20 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
         lines.gather_object(row);
     }
     Some(lines.table().into_bytes())
+}
+
+/// Rows of numbers, whose columns have no names.
+fn bare(text: &[u8]) -> Option<Vec<u8>> {
+    let rows: Vec<Vec<Option<serde_json::Number>>> = serde_json::from_slice(text).ok()?;
+    let wide = rows.first()?.len();
+    if rows.len() < LEAST || wide < 2 || rows.iter().any(|row| row.len() != wide) {
+        return None;
+    }
+    let cell =
+        |value: Option<serde_json::Number>| value.map_or_else(String::new, |number| number.to_string());
+    let line =
+        |row: Vec<Option<serde_json::Number>>| row.into_iter().map(cell).collect::<Vec<_>>().join(",") + "\n";
+    Some(rows.into_iter().map(line).collect::<String>().into_bytes())
 }
 
 /// The names of joints that a document lists beside its table, for the lists in it.
@@ -112,6 +128,12 @@ fn gather<'a>(
                 columns.push((path.clone(), (0..inner.len()).map(|at| &inner[&at.to_string()]).collect()));
             }
             Value::Object(inner) => gather(inner, path, columns),
+            // One run of several that there might be.
+            Value::Array(list) => {
+                if let [Value::Object(inner)] = &list[..] {
+                    gather(inner, path, columns);
+                }
+            }
             _ => {}
         }
         path.pop();
@@ -152,6 +174,7 @@ mod tests {
         for text in [
             r#"{"t": [0, 0.5, 1], "q_set": [1, 2, NaN], "q_act": [4, 5, 6], "gains": [1, 2]}"#,
             r#"{"run": {"t": [0, 0.5, 1], "q": {"set": [1, 2, null], "act": [4, 5, 6]}}, "by": "x"}"#,
+            r#"{"data": [{"t": [0, 0.5, 1], "q_set": [1, 2, null], "q_act": [4, 5, 6]}], "by": "x"}"#,
             r#"{"columns": ["q_act", "q_set", "t"], "index": [0, 1, 2], "data": [[4, 1, 0], [5, 2, 0.5], [6, null, 1]]}"#,
             r#"{"t": {"0": 0, "1": 0.5, "2": 1}, "q_set": {"0": 1, "1": 2, "2": null}, "q_act": {"0": 4, "1": 5, "2": 6}}"#,
             r#"{"v": 2, "samples": [{"t": 0, "q_set": 1, "q_act": 4}, {"t": 0.5, "q_set": 2, "q_act": 5}, {"t": 1, "q_set": null, "q_act": 6}]}"#,
@@ -168,9 +191,13 @@ mod tests {
             r#"{"meta": {"joints": ["boom", "arm"]}, "rows": [{"t": 0, "q": [1, 2]}, {"t": 1, "q": [3, 4]}, {"t": 2, "q": [5, 6]}]}"#,
         ] {
             let named = of(named).unwrap();
-            assert!(named.starts_with("\"arm q\",\"boom q\",\"t\"\n\"2\",\"1\",\"0\"\n"), "{named}");
+            assert!(named.starts_with("\"boom q\",\"arm q\",\"t\"\n\"1\",\"2\",\"0\"\n"), "{named}");
         }
-        for other in [r#"{"t": 0, "q": [1, 2, 3]}"#, r#"{"a": [1, 2], "b": [1, 2]}"#, "{}", "[1]", "t,q"] {
+        assert_eq!(of("[[0, 1.5], [1, null],\n [2, 3]]").as_deref(), Some("0,1.5\n1,\n2,3\n"));
+        for other in [
+            r#"{"t": 0, "q": [1, 2, 3]}"#, r#"{"a": [1, 2], "b": [1, 2]}"#, "{}", "[1]", "[[1, 2], [3]]",
+            "t,q",
+        ] {
             assert_eq!(of(other), None, "{other}");
         }
     }

@@ -14,7 +14,7 @@ use super::{
     order::doubt,
     rows::Rows,
     time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
-    unit::{ARCHIVE_DAY, FARTHEST_DEG, FARTHEST_RAD, Measure, parse_unit},
+    unit::{ARCHIVE_DAY, Measure, parse_unit},
 };
 use crate::{
     math::range,
@@ -68,6 +68,10 @@ pub(super) fn choose(
     if usable.is_empty() {
         usable = unsteady;
     }
+    // Beside a clock that rises, one that falls says what is left.
+    if !usable.iter().all(|found| found.falls) {
+        usable.retain(|found| !found.falls);
+    }
     look.join_day_and_time(&mut usable);
     look.join_parts(&mut usable);
     // What resolves the rows is better than what does not, then an instant than a span, then the source's clock than the
@@ -110,6 +114,8 @@ pub(super) struct Found {
     pub(super) resolves: bool,
     /// Whether it rises from row to row, or falls, more often than what only measures something does.
     pub(super) steady: bool,
+    /// Whether it falls, as what is left of a time does, and tables whose newest row stands first.
+    pub(super) falls: bool,
     pub(super) absolute: bool,
     /// The guesses.
     pub(super) doubt: Option<String>,
@@ -131,9 +137,6 @@ const LEAST_APART_S: f64 = 0.02;
 const FINEST_OF_THOUSANDTHS: f64 = 0.01;
 /// Fewer rows may rise by chance.
 const LEAST_ROWS: usize = 12;
-/// Rows that tell a time from a joint that rises for a while.
-const MANY_ROWS: usize = 4000;
-
 /// A table in which times are looked for.
 pub(super) struct Look<'a> {
     pub(super) head: &'a Head,
@@ -155,6 +158,7 @@ impl Look<'_> {
         Found {
             resolves: !ns.is_empty() && 2 * (rises + falls) + 1 >= ns.len(),
             steady: ns.len() < LEAST_ROWS && !is_span || 4 * rises.min(falls) <= rises + falls,
+            falls: falls > rises,
             absolute: ns.first().is_some_and(|first| *first >= FIRST_ABSOLUTE_NS),
             source,
             doubt,
@@ -298,45 +302,8 @@ impl Look<'_> {
         stamps
     }
 
-    /// The options that name columns of a table without names by their number; none of one with names.
-    fn by_number(&self, text: &[u8]) -> Vec<String> {
-        if self.head.named {
-            return Vec::new();
-        }
-        let columns = 0..self.labels.len();
-        let rises = |column: &usize| {
-            let Some(Found { source, .. }) = self.rising(*column) else { return false };
-            let [ns, _] = self.both(text, [&source; 2]);
-            ns.windows(2).take(MANY_ROWS).all(|two| two[0] < two[1])
-        };
-        let time = columns.clone().find(rises);
-        let first = time.map_or("--rate HZ".to_owned(), |column| format!("--time '#{}'", column + 1));
-        let sides: Vec<_> = ["--planned", "--measured"]
-            .into_iter()
-            .zip(columns.filter(|column| Some(*column) != time))
-            .collect();
-        let reach = sides.iter().map(|(_, column)| self.reach(text, *column)).fold(0.0, f64::max);
-        let turns = self.options.angle_unit.is_none() && self.options.slides.is_empty();
-        let degrees =
-            (turns && (FARTHEST_RAD..=FARTHEST_DEG).contains(&reach)).then(|| "--degrees".to_owned());
-        let sides = sides.into_iter().map(|(side, column)| format!("{side} 'J1=#{}'", column + 1));
-        std::iter::once(first).chain(sides).chain(degrees).collect()
-    }
-
-    /// The largest magnitude in a column, of all rows.
-    fn reach(&self, text: &[u8], column: usize) -> f64 {
-        let mut rows = Rows::new(text, self.dialect.separator);
-        let (mut record, mut reach) = (ByteRecord::new(), 0.0_f64);
-        while rows.next(&mut record).is_some() {
-            let cell = record.get(column).unwrap_or_default();
-            let value = number(cell, self.dialect.decimal_comma).filter(|value| value.is_finite());
-            reach = reach.max(value.map_or(0.0, f64::abs));
-        }
-        reach
-    }
-
     /// A column that rises from row to row.
-    fn rising(&self, column: usize) -> Option<Found> {
+    pub(super) fn rising(&self, column: usize) -> Option<Found> {
         let found = self.column(column).ok()?;
         let ns: Vec<i64> = self.ns(&found.source).collect::<Option<_>>()?;
         (ns.len() >= LEAST_ROWS && ns.windows(2).all(|two| two[0] < two[1])).then_some(found)

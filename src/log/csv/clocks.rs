@@ -164,7 +164,12 @@ fn groups(head: &Head, dialect: Dialect, options: &CsvOptions) -> Option<(Vec<us
     let of = |time: &usize| clock::of_column(head, &labels, dialect, options, *time);
     // What goes up and down is no clock.
     let is_clock = |column: &usize| labels[*column].is_time && of(column).is_none_or(|found| found.steady);
-    let times: Vec<usize> = (0..labels.len()).filter(is_clock).collect();
+    let mut times: Vec<usize> = (0..labels.len()).filter(is_clock).collect();
+    // Beside a clock that rises, one that falls says what is left.
+    let falls = |column: &usize| of(column).is_some_and(|found| found.falls);
+    if !times.iter().all(falls) {
+        times.retain(|column| !falls(column));
+    }
     if !head.named || times.len() < 2 {
         return None;
     }
@@ -249,6 +254,13 @@ mod tests {
         let text = "t_set_s,boom_set_deg,t_act_s,boom_act_deg\n0.0,1,0.05,2\n0.1,3,0.1,4\n0.2,5,,\n";
         let expected = "t_set_s,boom_set_deg,,boom_act_deg\n0.0,1,,\n0.05,,,2\n0.1,3,,4\n0.2,5,,\n";
         assert_eq!(of(text).as_deref(), Some(expected));
+    }
+
+    #[test]
+    fn what_is_left_of_a_time_is_no_clock() {
+        let row = |k: u32| format!("{0}.0,{0},{1}.5,{0},{0}\n", k, 60 - k);
+        let rows: String = (0..40).map(row).collect();
+        assert_eq!(of(&format!("timestamp_s,action_J9,time_remaining_s,target_J1,actual_J1\n{rows}")), None);
     }
 
     #[test]

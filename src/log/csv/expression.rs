@@ -30,9 +30,11 @@ pub(super) fn derive(
     let mut all = Vec::new();
     let width = labels.len();
     let given = options.columns.clone();
-    for ((role, quantity), columns) in &mut options.columns {
+    let sides =
+        options.columns.iter_mut().map(|((role, quantity), columns)| (option(*role, *quantity), columns));
+    let beside = options.interfaces.values_mut().map(|columns| ("--interface", columns));
+    for (flag, columns) in sides.chain(beside) {
         for (joint, text) in columns {
-            let flag = option(*role, *quantity);
             if find(text, flag, &head.names[..width]).is_ok() {
                 continue;
             }

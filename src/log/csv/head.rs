@@ -191,16 +191,25 @@ fn is_units(cells: &[String]) -> bool {
         && cells.iter().filter(|cell| stated(cell)).all(|cell| unit_alone(cell).is_some())
 }
 
-/// A header that is written as the last comment above the numbers.
+/// A header that is written as the last comment above the numbers that says something, perhaps behind a word (`Columns: t q`) or between
+/// blanks.
 fn commented(start: &[u8], first_line: u64, dialect: Dialect) -> Option<(u64, Vec<String>)> {
     let before = usize::try_from(first_line).ok()?.checked_sub(1)?;
     let lines = start.split(|byte| *byte == b'\n').take(before).enumerate();
-    let (line, text) = lines.filter(|(_, line)| !line.trim_ascii().is_empty()).last()?;
+    let says = |(_, line): &(usize, &[u8])| !matches!(line.trim_ascii(), b"" | b"#");
+    let (line, text) = lines.filter(says).last()?;
     let text = text.trim_ascii().strip_prefix(b"#")?.trim_ascii();
-    let mut record = ByteRecord::new();
-    Rows::new(text, dialect.separator).next(&mut record)?;
-    let names: Vec<String> = record.iter().map(cell_text).collect();
-    (names.len() == dialect.width).then_some((line as u64 + 1, names))
+    let behind = text.iter().position(|byte| *byte == b':').map(|at| text[at + 1..].trim_ascii());
+    let names = |text: &[u8]| -> Option<Vec<String>> {
+        let mut record = ByteRecord::new();
+        Rows::new(text, dialect.separator).next(&mut record)?;
+        let separated: Vec<String> = record.iter().map(cell_text).collect();
+        let blank = || text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).map(cell_text);
+        let fits = |names: &Vec<String>| names.len() == dialect.width;
+        Some(separated).filter(fits).or_else(|| Some(blank().collect()).filter(fits))
+    };
+    let names = [Some(text), behind].into_iter().flatten().find_map(names)?;
+    Some((line as u64 + 1, names))
 }
 
 #[cfg(test)]
@@ -232,6 +241,8 @@ mod tests {
     fn a_header_may_be_a_comment_or_missing() {
         let head = of("# t q1 q2\n0 1 2\n1 1 2\n");
         assert_eq!((head.names.as_slice(), head.named), (&["t".into(), "q1".into(), "q2".into()][..], true));
+        let head = of("# by us\n# Columns: t q1 q2\n#\n0\t1\t2\n1\t1\t2\n");
+        assert_eq!((head.names.as_slice(), head.line), (&["t".into(), "q1".into(), "q2".into()][..], 2));
         let head = of("0 1 2\n1 1 2\n");
         assert_eq!((head.names[2].as_str(), head.named), ("column_3", false));
     }

@@ -9,6 +9,7 @@ mod again;
 mod behind;
 mod by_column;
 mod by_meaning;
+mod by_number;
 mod clock;
 mod clocks;
 mod coarse;
@@ -209,8 +210,11 @@ fn read_table(
     let read = Form::of(name, &text, &form, &mut remarks)?;
     let guess = read.guessed_ms();
     let (run, _) = read.read(name, &text, remarks)?;
-    let run = match guess.and_then(|column| too_fast::in_seconds(&run, &column)) {
-        Some(doubt) => {
+    let run = match guess.and_then(|column| Some((too_fast::in_seconds(&run, &column)?, column))) {
+        Some((_, column)) if too_fast::counts_rows(&run) => {
+            return Err(CsvError::TimeUnit { column, step: 1.0 });
+        }
+        Some((doubt, _)) => {
             let mut remarks = before;
             remarks.add(Code::Guessed, 1, doubt);
             let form = CsvOptions { time_unit: Some("s".to_owned()), ..form };

@@ -111,6 +111,14 @@ pub(super) fn read(
             column.values.reverse();
         }
     }
+    if let Some(order) = order(&stamp_ns).filter(|_| !time.is_of_day()) {
+        let message = "rows in no order of their times; put in order";
+        remarks.add(Code::Reordered, stamp_ns.windows(2).filter(|w| w[1] < w[0]).count() as u64, message);
+        stamp_ns = order.iter().map(|row| stamp_ns[*row]).collect();
+        for column in columns.values_mut() {
+            column.values = order.iter().map(|row| column.values[*row]).collect();
+        }
+    }
     let absolute = time.settle(&mut stamp_ns);
     let outside = drop_outside(&mut stamp_ns, &mut columns);
     let clock = time.columns().first().map_or("", |&column| head.names[column].as_str());
@@ -128,6 +136,21 @@ fn runs_backwards(stamp_ns: &[i64]) -> bool {
     let rises = stamp_ns.windows(2).filter(|w| w[1] > w[0]).count();
     falls >= FEWEST && rises <= falls / 100
 }
+
+/// The order of rows by time where many are earlier than the one before and each has a time of its own, as what a database gives
+/// that was asked for no order; `None` where few are, which came late, or are of another run.
+fn order(stamp_ns: &[i64]) -> Option<Vec<usize>> {
+    let falls = stamp_ns.windows(2).filter(|w| w[1] < w[0]).count();
+    if falls < FEWEST || MANY * falls < stamp_ns.len() {
+        return None;
+    }
+    let mut order: Vec<usize> = (0..stamp_ns.len()).collect();
+    order.sort_by_key(|row| stamp_ns[*row]);
+    order.windows(2).all(|w| stamp_ns[w[0]] < stamp_ns[w[1]]).then_some(order)
+}
+
+/// One row in so many is many.
+const MANY: usize = 5;
 
 /// An error if most rows have no time, a remark if some rows have no time.
 fn judge_stamps(

@@ -9,6 +9,7 @@ use super::{
     unit::{DEGREE, FARTHEST_DEG, FARTHEST_RAD, Measure, RADIAN, UNITLESS, Unit, parse_unit},
 };
 use crate::{
+    log::write::VALVE,
     remark::{Code, Remarks},
     series::JointKind,
     suggest::nearest,
@@ -64,6 +65,10 @@ pub(super) fn to_si(
     }
     remark_guessed(&guessed, labels, head, fallback.map_or(RADIAN, |(unit, _)| unit), remarks);
     for one in &layout.interfaces {
+        if one.name == VALVE {
+            settled.push(share_of_travel(one.column, head, cells, remarks));
+            continue;
+        }
         let unit = stated(one.column).filter(|_| one.name.ends_with("_pa"));
         match unit {
             Some(unit) if unit.measure == Measure::Pressure => {
@@ -84,6 +89,29 @@ pub(super) fn to_si(
     }
     let kind = |length: &Option<Length>| length.map_or(JointKind::Turns, |_| JointKind::Slides);
     Ok((settled, lengths.iter().map(kind).collect()))
+}
+
+/// Signals to valves are shares of their full travel: percent are a hundred of them, and what reaches farther is in a unit that nobody
+/// says.
+fn share_of_travel(column: usize, head: &Head, cells: &mut Cells, remarks: &mut Remarks) -> Settled {
+    const PERCENT: [&str; 3] = ["%", "pct", "percent"];
+    const FULL: f64 = 1.5;
+    let name = head.names[column].to_lowercase();
+    let name = name.trim_end_matches([')', ']', ' ']);
+    if PERCENT.iter().any(|unit| name.ends_with(unit)) {
+        scale(cells, column, 0.01);
+        return Settled { column, unit: None, from: "percent, by its header" };
+    }
+    let of = cells.columns.get(&column).map_or(&[][..], |column| &column.values);
+    let reach =
+        of.iter().filter(|value| value.is_finite()).fold(0.0_f64, |reach, value| reach.max(value.abs()));
+    let message = format!(
+        "signals to valves that reach farther than their full travel, such as {:?} ({reach:.3}): dead bands of valves are told in the \
+         unit of their column; --interface {VALVE}:JOINT=FACTOR*COLUMN,... makes shares of them, such as 0.1*COLUMN of 10 V",
+        head.names[column]
+    );
+    remarks.add(Code::Guessed, u64::from(reach > FULL), message);
+    Settled { column, unit: None, from: "as given" }
 }
 
 /// The unit of the positions of a joint that slides, and whether the caller says so.

@@ -43,6 +43,11 @@ pub(super) fn in_seconds(run: &CsvRun, column: &str) -> Option<String> {
     })
 }
 
+/// Whether a time that was taken as ms rises by 1 in every row.
+pub(super) fn counts_rows(run: &CsvRun) -> bool {
+    run.stamp_ns().windows(2).all(|two| two[1] - two[0] == 1_000_000)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::{CsvOptions, read_csv_bytes};
@@ -69,6 +74,12 @@ mod tests {
         let (lasts_s, said) = read(60.0, |k| (0.1 * k).floor());
         assert!((lasts_s - 59.9).abs() < 0.01, "{lasts_s} {said}");
         assert!(said.contains("is taken as s") && said.contains("10 rows"), "{said}");
+        let table: String =
+            (0..600).map(|k| format!("{k},{0:.4},{0:.4}\n", (0.1 * f64::from(k)).sin())).collect();
+        let table = format!("t,j1_target_rad,j1_actual_rad\n{table}");
+        let error =
+            read_csv_bytes("a.csv", table.as_bytes(), &CsvOptions::default()).unwrap_err().to_string();
+        assert!(error.contains("counts time in steps of 1") && error.contains("--rate HZ"), "{error}");
         let (_, said) = read(6000.0, |k| (0.1 * k).floor());
         assert!(said.contains("taken as ms") && said.contains("10 rows"), "{said}");
     }

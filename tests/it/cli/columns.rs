@@ -76,9 +76,21 @@ fn a_plan_may_be_a_sum_and_a_map_keeps_how_a_file_was_read() {
     assert!(code == 1 && error.contains("nothing"), "{code} {error}");
     let (code, _, error) = import(&["--slides", "stick=mm"]);
     assert!(code == 1 && error.contains("--slides names the joint \"stick\""), "{code} {error}");
-    let (code, _, error) =
-        import(&["--planned", "boom=measured+error", "--interface", "valve_command:BOOM=raw"]);
+    let valve = |column: &str| import(&["--planned", "boom=measured+error", "--interface", column]);
+    let (code, _, error) = valve("valve_command:BOOM=0.001*raw");
     assert_eq!(code, 0, "{error}");
+    let (code, out, error) = valve("valve_command:BOOM=raw");
+    assert!(code == 3 && out.contains("reach farther than their full travel"), "{out}{error}");
+}
+
+#[test]
+fn signals_to_valves_in_percent_are_shares() {
+    let text = timed("t_s,boom_set_rad,boom_act_rad,boom_valve_%", (200, 0.05), |t_s| {
+        let [planned, measured] = moves(t_s);
+        format!("{t_s},{planned},{measured},{}", 80.0 * t_s.sin())
+    });
+    let (code, out, error) = import(&text, &["--interface", "valve_command:boom=boom_valve_%", "--json"]);
+    assert!(code == 0 && out.contains("percent, by its header"), "{code} {out}{error}");
 }
 
 #[test]

@@ -13,7 +13,7 @@ fn moves(t_s: f64) -> [f64; 2] {
 }
 
 /// Rows at 50 Hz of a time, a planned and a measured angle.
-fn rows(row: impl Fn(f64, f64, f64) -> String) -> String {
+pub(super) fn rows(row: impl Fn(f64, f64, f64) -> String) -> String {
     let times = (0..250).map(|k| f64::from(k) * 0.02);
     times.map(|t_s| row(t_s, moves(t_s)[0], moves(t_s)[1])).collect()
 }
@@ -23,7 +23,7 @@ fn comma(text: &str) -> String {
 }
 
 /// Reports a file; exit code, the lines of the run, and what is wrong.
-fn report(file: &str, text: &str) -> (i32, String, String) {
+pub(super) fn report(file: &str, text: &str) -> (i32, String, String) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(file), text).unwrap();
     said(&hydrotrace(folder.path(), &format!("report {file}")))
@@ -367,23 +367,4 @@ fn two_clocks_are_judged_by_all_rows() {
     let text = "t_a_s,stamp,boom_set_deg,boom_act_deg\n".to_owned() + &rows(row);
     let (code, text, error) = report("a.csv", &text);
     assert!(code == 3 && text.contains("0.300 s away"), "{text}{error}");
-}
-
-#[test]
-fn a_table_without_names_is_told_the_line_that_names_columns_by_number() {
-    let folder = tempfile::tempdir().unwrap();
-    let paste = |text: &str| {
-        fs::write(folder.path().join("a.csv"), text).unwrap();
-        let (code, _, error) = said(&hydrotrace(folder.path(), "report a.csv"));
-        assert_eq!(code, 1, "{error}");
-        (error.split('`').nth(1).unwrap_or_default().to_owned(), error)
-    };
-    let (line, error) = paste(&rows(|t, p, m| format!("{:.4},{t:.2},{p:.4},{m:.4}\n", p.sin())));
-    assert!(line.contains("--time '#2' --planned 'J1=#1' --measured 'J1=#3'"), "{error}");
-    assert!(error.contains("#2 rises from row to row as a time does"), "{error}");
-    let line = line.replace("J1=#3", "J1=#4").replace("J1=#1", "J1=#3").replace('\'', "");
-    let (code, text, error) = said(&hydrotrace(folder.path(), &line[11..]));
-    assert!(code != 1 && text.contains("one joint, 4.98 s at 50.0 Hz"), "{line} {text}{error}");
-    let (line, error) = paste(&rows(|_, p, m| format!("{p:.4},{m:.4}\n")));
-    assert!(line.contains("--rate HZ --planned 'J1=#1' --measured 'J1=#2'"), "{error}");
 }
