@@ -29,6 +29,8 @@ pub struct Joint {
     pub kind: JointKind,
     /// What it may do.
     pub limit: JointLimit,
+    /// Damping and friction by its file, N m s/rad and N m (N s/m and N if it slides): in no torque of this arm.
+    pub resists: [f64; 2],
 }
 
 /// From one joint to the next: the next frame at position zero, seen from this one.

@@ -23,9 +23,21 @@ pub enum ArmError {
     #[error("{file}: the link {tool} cannot be placed without the positions of {}", joints.join(", "))]
     JointsMissing { file: String, tool: String, joints: Vec<String> },
     /// No posture within the limits has the tool there; what the nearest attempt leaves.
-    #[error("the tool pose is out of reach by {distance_m:.4} m and {}", Degrees(*angle_rad))]
+    #[error(
+        "the tool pose is out of reach by {} and {}{}",
+        if *distance_m < 1e-6 { format!("{distance_m:.1e} m") } else { format!("{:.3} mm", 1e3 * distance_m) },
+        if *angle_rad < NEARLY[1] { format!("{angle_rad:.1e} rad") } else { Degrees(*angle_rad).to_string() },
+        if *distance_m < NEARLY[0] && *angle_rad < NEARLY[1] {
+            "; the arm comes no nearer, as one of few joints does that cannot choose all of a pose: give this key point by its joints"
+        } else {
+            ""
+        }
+    )]
     Unreachable { distance_m: f64, angle_rad: f64 },
 }
+
+/// A pose that is missed by no more is rounded, m and rad.
+const NEARLY: [f64; 2] = [1e-3, 2e-3];
 
 pub(super) struct Witness<'a>(pub(super) &'a str);
 

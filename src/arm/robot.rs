@@ -151,7 +151,18 @@ pub(super) struct Joint {
     #[serde(default)]
     pub(super) limit: Limit,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) dynamics: Option<Dynamics>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) mimic: Option<Mimic>,
+}
+
+/// What a joint takes to move by itself: N m s/rad and N m, or N s/m and N.
+#[derive(Debug, Clone, Copy, Default, Deserialize, Serialize)]
+pub(super) struct Dynamics {
+    #[serde(rename = "@damping", default, deserialize_with = "number")]
+    pub(super) damping: f64,
+    #[serde(rename = "@friction", default, deserialize_with = "number")]
+    pub(super) friction: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]

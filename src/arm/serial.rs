@@ -58,7 +58,7 @@ impl Kinematics {
             match joint.kind.moves() {
                 None => builder.fixed(&origin, child),
                 Some(kind) => {
-                    let free = Joint { name: joint.name.clone(), kind, limit: FREE };
+                    let free = Joint { name: joint.name.clone(), kind, limit: FREE, resists: [0.0; 2] };
                     builder.moving(free, &origin, &tree.axis(joint, &element)?, child);
                 }
             }

@@ -295,7 +295,11 @@ impl<'a> Tree<'a> {
         }
         let wrong =
             |found: &str, expected: &str| self.at.unexpected(format!("{element} <limit>"), found, expected);
-        let found = format!("lower {lower_rad} and upper {upper_rad}");
+        let found = if lower_rad.abs().max(upper_rad.abs()) > 0.0 {
+            format!("lower {lower_rad} and upper {upper_rad}")
+        } else {
+            "no range".to_owned()
+        };
         if lower_rad.is_nan() || upper_rad.is_nan() || lower_rad >= upper_rad {
             return Err(wrong(&found, "lower below upper, rad or m"));
         }
@@ -313,6 +317,7 @@ impl<'a> Tree<'a> {
         let said = |value: f64| if value > 0.0 { value } else { f64::INFINITY };
         let (torque_nm, speed_rad_s) = (said(given.effort), said(given.velocity));
         let limit = JointLimit { lower_rad, upper_rad, torque_nm, speed_rad_s };
-        Ok(Joint { name: joint.name.clone(), kind: joint.kind.moves().unwrap_or_default(), limit })
+        let resists = joint.dynamics.map_or([0.0; 2], |found| [found.damping, found.friction]);
+        Ok(Joint { name: joint.name.clone(), kind: joint.kind.moves().unwrap_or_default(), limit, resists })
     }
 }

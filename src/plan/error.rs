@@ -13,7 +13,8 @@ pub enum PlanError {
     #[error("the task has other {what} than expected: {expected}")]
     Task { what: &'static str, expected: String },
     #[error(
-        "the task's joints are {task}, those of the arm are {arm}; name every joint of the arm in the task"
+        "the task's joints are {task}, those of the arm are {arm}; name every joint of the arm in the task, or, where the arm ends before \
+         the others, as before a gripper, the link at which it does: tool = \"LINK\""
     )]
     JointsDiffer { task: String, arm: String },
     #[error(
@@ -32,9 +33,9 @@ pub enum PlanError {
         source: ArmError,
     },
     #[error(
-        "key point {point} has {joint} at {}, its range is {} to {}: {:.3e} {} beyond it; move the key point or widen the range",
+        "key point {point} has {joint} at {}, its range is {} to {}: {} beyond it; move the key point or widen the range",
         kind.says(*found_rad), kind.says(*lowest_rad), kind.says(*highest_rad),
-        (lowest_rad - found_rad).max(found_rad - highest_rad), kind.unit()
+        kind.says((lowest_rad - found_rad).max(found_rad - highest_rad))
     )]
     PointOutside {
         /// Number of the key point, from 1.

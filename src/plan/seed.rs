@@ -223,7 +223,15 @@ fn curve(setup: &Setup, fastest: &Timing, durations_s: &[f64], power: f64, most:
             trust: if step == 0 { FAR_OFF } else { NEARLY },
             enough: COARSE,
         };
-        let descended = descend(setup, &mut evaluator, &start_s, &goal);
+        let mut descended = descend(setup, &mut evaluator, &start_s, &goal);
+        // A plan that is slowed down evenly keeps its limits: a descent that lost them is no better.
+        if descended.timing.as_ref().is_none_or(|timing| timing.violation > 0.0)
+            && let Some(objectives) = evaluator.evaluate(setup, &start_s)
+            && evaluator.violation() <= 0.0
+        {
+            let timing = Timing { interval_s: start_s, objectives, violation: 0.0 };
+            descended = Descended { timing: Some(timing), settled: false, ..descended };
+        }
         if let Some(timing) = &descended.timing {
             last = timing.clone();
             first.get_or_insert_with(|| timing.clone());

@@ -9,7 +9,7 @@ use super::{
     posture::{key_points, poses},
 };
 use crate::{
-    arm::{Arm, Inertia, Load, Pose},
+    arm::{Arm, Inertia, Joint, Load, Pose},
     series::JointKind,
     spline::{Degree, Dwell, Ends, KeyPoints, Motion},
     task::{Boundary, Task},
@@ -158,6 +158,20 @@ impl Setup {
     /// Names of the joints, base first.
     pub fn joint_names(&self) -> Vec<String> {
         self.arm.chain.joints().iter().map(|joint| joint.name.clone()).collect()
+    }
+
+    /// Joints whose damping and friction take more than a little of their torque at their speed limit, and which share.
+    pub fn resisting(&self) -> Vec<(&str, f64)> {
+        const LITTLE: f64 = 0.02;
+        let share = |joint: &Joint, limits: &JointLimits| {
+            let [damping, friction] = joint.resists.map(|by| by.max(0.0));
+            let speed = if limits.speed_rad_s.is_finite() { limits.speed_rad_s } else { 0.0 };
+            (friction + damping * speed) / limits.torque_n_m
+        };
+        let joints = self.arm.chain.joints().iter();
+        let shares =
+            joints.zip(&self.limits).map(|(joint, limits)| (joint.name.as_str(), share(joint, limits)));
+        shares.filter(|(_, share)| *share > LITTLE).collect()
     }
 
     /// How the joints move, base first.

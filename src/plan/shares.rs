@@ -17,6 +17,9 @@ const EXACT: f64 = 0.85;
 const FAR_BROKEN: f64 = 1.5;
 const COARSE_AGAIN: f64 = 2.0;
 
+/// Positions that differ by less than this share of a range are one.
+const TOUCHES: f64 = 1e-9;
+
 /// What a row of limits is judged by.
 enum Row {
     /// A spline, which has exact peaks.
@@ -140,10 +143,19 @@ impl Evaluator {
         // At the ends of a segment, which no node reaches, the value is that of the outer control point.
         for (range, segment) in self.mesh.segment.iter().zip(self.motion.segments()) {
             let control = segment.spline.control(joint, quantity);
-            for (instant, value) in
-                [(range.start, control.first()), (range.end.saturating_sub(1), control.last())]
-            {
-                let Some(value) = value else { continue };
+            let fixed = segment.spline.fixed_controls();
+            for (instant, ascending) in [(range.start, true), (range.end.saturating_sub(1), false)] {
+                let at =
+                    |k: usize| control.get(if ascending { k } else { control.len().checked_sub(k + 1)? });
+                let Some(mut value) = at(0) else { continue };
+                // A rest at the end of a range touches it, and what leaves it by a high power of time does so without a slope: the first
+                // control point that is free tells with one.
+                let same = |k: usize| at(k).is_some_and(|other| (other - value).abs() <= TOUCHES * allowed);
+                let touches = (value - middle).abs() >= (1.0 - TOUCHES) * allowed;
+                if wanted == Wanted::Each && quantity == Quantity::Position && touches && (0..fixed).all(same)
+                {
+                    value = at(fixed).unwrap_or(value);
+                }
                 let (share, piece) = ((value - middle) / allowed, instant / LANES);
                 peaks[2 * piece] = peaks[2 * piece].max(share);
                 peaks[2 * piece + 1] = peaks[2 * piece + 1].max(-share);

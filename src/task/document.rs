@@ -78,7 +78,7 @@ pub(super) struct Point {
     pub(super) positions_mm: Option<Spanned<ByJoint>>,
     /// Where the tool is; the joints follow by inverse kinematics, near the key point before.
     pub(super) tool: Option<Tool>,
-    /// How long the arm rests here, s.
+    /// How long the arm rests here, s; 0 only stops there.
     #[cfg_attr(test, schemars(with = "Option<f64>"))]
     pub(super) dwell_s: Option<Spanned<f64>>,
     /// Payload from the end of the dwell on, kg.

@@ -146,6 +146,16 @@ impl Reader<'_> {
         }
     }
 
+    /// Zero or more.
+    fn not_negative(&self, key: &str, given: &Spanned<f64>) -> Result<f64, TaskError> {
+        let value = *given.get_ref();
+        if value.is_finite() && value >= 0.0 {
+            Ok(value)
+        } else {
+            Err(self.value(key, given, "zero, which only stops there, or more is expected"))
+        }
+    }
+
     /// Numbers by objective of a plan; `key` is the objective's key in this table, `otherwise` what those left out get.
     fn by_objective(
         &self,
@@ -216,7 +226,7 @@ impl Reader<'_> {
             (true, Some(_)) => return Err(TaskError::Place { line, found: "both" }),
             (false, None) => return Err(TaskError::Place { line, found: "neither" }),
         };
-        let dwell_s = point.dwell_s.as_ref().map(|dwell| self.positive("dwell_s", dwell)).transpose()?;
+        let dwell_s = point.dwell_s.as_ref().map(|dwell| self.not_negative("dwell_s", dwell)).transpose()?;
         let payload_kg = match &point.payload_kg {
             Some(payload) if !(payload.get_ref().is_finite() && *payload.get_ref() >= 0.0) => {
                 return Err(self.value("payload_kg", payload, "a mass of zero or more is expected"));

@@ -49,6 +49,10 @@ const PIECES: usize = 25;
 const OF_FEW: [usize; 4] = [20, 20, 10, 8];
 const FEWEST: [usize; 2] = [2, 4];
 const DEFAULT_MOST: usize = 5;
+/// The same of arms of few joints: pieces times joints.
+const FEW_JOINTS: usize = 3;
+const PIECES_OF_FEW_JOINTS: usize = 150;
+const MOST_OF_FEW_JOINTS: usize = 8;
 /// Pieces of a motion at most, by default and of a caller who says how many: the time of a step grows with their cube.
 const MOST: [usize; 2] = [128, 256];
 /// Quadratic programmes of a descent, and the gain of merit that is worth one.
@@ -155,10 +159,9 @@ fn sought(
     let bound = |k: &Objective| ceilings[*k].is_finite();
     let stops = stopping_s(setup);
     let begun = |begin: Begin<'_>, first| sought_from(setup, (timing, begin), (first, aim), ceilings, pieces);
-    let from = |first: Option<Aim>| begun(Begin::Passing, first);
     // Where key points lie close together, or a pass would swing wide, the best curve near the one that stops is better.
     let (mut found, other) = threads::both(
-        || from(None),
+        || begun(Begin::Passing, None),
         || {
             if aim.pace == Pace::Fastest {
                 begun(Begin::Stopping(&stops), None)
@@ -174,10 +177,20 @@ fn sought(
     {
         found = Ok(other);
     }
-    for first in [Aim::fastest(), Aim::smoother(ceilings)] {
-        if found == Err(NoShape::NoGain) && Objective::OF_PLAN.iter().any(bound) {
-            found = from(Some(first));
+    let bounded = Objective::OF_PLAN.iter().any(bound);
+    let none = |found: &Result<Shape, NoShape>| matches!(found, Err(NoShape::NoGain | NoShape::Broken(_)));
+    for (begin, first) in [
+        (Begin::Passing, Aim::fastest()),
+        (Begin::Stopping(&stops), Aim::fastest()),
+        (Begin::Passing, Aim::smoother(ceilings)),
+    ] {
+        if none(&found) && bounded {
+            found = begun(begin, Some(first)).or(found);
         }
+    }
+    // The fastest may keep ceilings that nothing else is found within.
+    if none(&found) && bounded && aim.pace != Pace::Fastest && !timing.objectives.within(ceilings) {
+        found = sought(setup, timing, Aim::fastest(), ceilings, pieces).or(found);
     }
     found
 }
@@ -190,9 +203,17 @@ fn sought_from(
     pieces: Option<usize>,
 ) -> Result<Shape, NoShape> {
     let intervals = setup.interval_count();
-    let most = MOST[usize::from(pieces.is_some())];
+    // A motion of many intervals has two pieces of each, too.
+    let many = FEWEST[0] * intervals > MOST[0];
+    let most = MOST[usize::from(pieces.is_some() || many)];
     let room = most / intervals.max(1);
-    let usual = (PIECES / intervals.max(1)).clamp(FEWEST[1], DEFAULT_MOST).min(room).max(FEWEST[0]);
+    // Steps of few joints are quick.
+    let (all, each) = if setup.joint_count() <= FEW_JOINTS {
+        (PIECES_OF_FEW_JOINTS / setup.joint_count().max(1), MOST_OF_FEW_JOINTS)
+    } else {
+        (PIECES, DEFAULT_MOST)
+    };
+    let usual = (all / intervals.max(1)).clamp(FEWEST[1], each).min(room).max(FEWEST[0]);
     let usual = OF_FEW.get(intervals).copied().unwrap_or(usual);
     // More than a descent takes are as many as it does.
     let pieces = pieces.unwrap_or(usual).min(room.max(FEWEST[0])).clamp(1, MOST_PIECES as usize);
@@ -244,6 +265,12 @@ fn sought_from(
             && let Pace::Within(within_s) = &mut aim.pace
         {
             *within_s *= (1.0 - 1e-6) / slower;
+        } else if let Some(found) =
+            found.as_ref().filter(|found| aim.pace == Pace::Sought && !found.objectives.within(ceilings))
+        {
+            // What a plan is slowed down by at last may bring it above a ceiling.
+            let over = |k: Objective| (found.objectives[k] / ceilings[k] * (1.0 + 1e-6)).max(1.0);
+            aim.ceilings = aim.ceilings.map_plan(|k| aim.ceilings[k] / over(k));
         } else {
             break;
         }

@@ -15,7 +15,7 @@ const SHORTEST: f64 = 1.01;
 const FAR: f64 = 0.6;
 
 /// Share of the time of the fastest plan that stops at every key point have to save to be told.
-const SAVED: f64 = 0.05;
+const SAVED: f64 = 0.03;
 
 /// Evaluations of its search, of which a tenth of a second has many.
 const STOPPING: u64 = 1600;
@@ -32,6 +32,14 @@ impl PlanRequest {
             );
             remarks.add(Code::NoMass, weightless.len() as u64, message);
         }
+        let resists = setup.resisting();
+        let message = format!(
+            "damping and friction that the arm's file gives to {} are in no torque and power of a plan: at its speed limit {} of what a \
+             joint may take",
+            resists.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", "),
+            resists.iter().map(|(_, share)| format!("{:.0} %", 100.0 * share)).collect::<Vec<_>>().join(", ")
+        );
+        remarks.add(Code::NotSupported, resists.len() as u64, message);
         if let [first, ..] = setup.stops() {
             let message = format!(
                 "key point {} and the one beside it are the same: the arm stops there; dwell_s says for how long",
