@@ -56,13 +56,15 @@ pub(super) fn joint<'a>(pair: &'a Pair, rules: &Rules) -> Option<Joint<'a>> {
         .map(|m| (m, measured_onset(pair, &signals, m, rules)))
         .collect();
     let answers = answers((pair, &signals), &planned, &untils_s, &measured, rules);
-    let transitions: Vec<Transition> = (0..planned.len())
+    let mut transitions: Vec<Transition> = (0..planned.len())
         .map(|k| {
             let answer = answers[k].and_then(|answer: usize| measured.get(answer).copied());
-            let found = transition(pair, &signals, (planned[k], asked[k], untils_s[k]), answer, rules);
-            Transition { index: k + 1, ..found }
+            transition(pair, &signals, (planned[k], asked[k], untils_s[k]), answer, rules)
         })
         .collect();
+    // Motions that follow at once may be dated within each other.
+    transitions.sort_by(|a, b| a.planned_onset_s.total_cmp(&b.planned_onset_s));
+    (1..).zip(&mut transitions).for_each(|(index, found)| found.index = index);
     let from_rest = transitions.iter().filter(|t| t.kind == Kind::Start);
     let delays = from_rest.filter_map(|t| Some((t.direction, t.onset_delay_s?)));
     let stops = stops(pair, &signals, rules);

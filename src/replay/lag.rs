@@ -15,6 +15,9 @@ const ALIKE: f64 = 0.05;
 const VALLEY: f64 = 0.5;
 const LEAD_COUNTS: f64 = 10.0;
 
+/// Share of the planned motion that is compared at a shift at least, by its energy.
+const OVERLAP: f64 = 0.5;
+
 /// The lag of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Lag {
@@ -104,12 +107,17 @@ impl Correlation {
             let energy = (self.planned_energy[k] * self.measured_energy[k]).sqrt();
             if energy > 0.0 { self.product[k] / energy } else { 0.0 }
         };
-        let all: Vec<f64> = (0..self.product.len()).map(correlation).collect();
+        // Where a shift leaves little of the motion, anything fits it.
+        let most = self.planned_energy.iter().copied().fold(0.0, f64::max);
+        let tells = |k: usize| self.planned_energy.get(k).is_some_and(|energy| *energy >= OVERLAP * most);
+        let all: Vec<f64> =
+            (0..self.product.len()).map(|k| if tells(k) { correlation(k) } else { 0.0 }).collect();
         let best = nearest_alike(&all, (0..all.len()).max_by(|&a, &b| all[a].total_cmp(&all[b]))?, near);
         if !(all[best] > 0.0 && all[best].is_finite()) {
             return None;
         }
-        if best == 0 || best + 1 == all.len() || all[best] < rules.lag_min_correlation {
+        let is_last = best == 0 || !tells(best - 1) || !tells(best + 1);
+        if is_last || all[best] < rules.lag_min_correlation {
             return Some((None, all[best]));
         }
         let bend = all[best - 1] - 2.0 * all[best] + all[best + 1];
@@ -279,6 +287,16 @@ mod tests {
                 assert_eq!(beside.map(f64::to_bits), alone.map(f64::to_bits), "{n} {k}");
             }
         }
+    }
+
+    #[test]
+    fn a_shift_that_leaves_little_of_a_short_run_is_no_lag() {
+        let t_s: Vec<f64> = (0..60).map(|k| f64::from(k) * 0.008).collect();
+        let ramp: Vec<f64> = t_s.iter().map(|t| 0.1 + t * t).collect();
+        let late: Vec<f64> = t_s.iter().map(|t| 0.1 + (t - 0.004) * (t - 0.004)).collect();
+        let speeds = Speeds { t_s: &t_s, planned_rad_s: &ramp, measured_rad_s: &late };
+        let found = lag(&speeds, &[motion(0.0, 0.472, 0..60)], 0.008, &Rules::default());
+        assert!(found.shift_s.is_none_or(|shift_s| shift_s.abs() < 0.02), "{found:?}");
     }
 
     #[test]

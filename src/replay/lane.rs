@@ -64,7 +64,7 @@ fn between(found: &Replay, joint: &str, [begin_s, end_s]: [f64; 2]) -> Vec<Stret
         let moves_to_s = rests_s.unwrap_or(next_s).min(next_s);
         let answers_s = match (start.answer, start.measured_onset_s) {
             (Answer::Never, _) => moves_to_s,
-            (_, onset_s) => onset_s.unwrap_or(from_s).clamp(from_s, next_s),
+            (_, onset_s) => onset_s.unwrap_or(from_s).min(next_s).max(from_s),
         };
         // A joint that left and is not seen to come to rest settles on.
         let settled_s = stop.map(|stop| stop.measured_s.unwrap_or(next_s));
@@ -147,6 +147,14 @@ mod tests {
         let found = run(&[1.0], &[1.9], 3.6);
         let expected = [(Phase::Waits, 1.0, 1.9), (Phase::Follows, 1.9, 3.0), (Phase::Settles, 3.0, 3.6)];
         assert_is(&lane(&found, "boom", &[[0.0, 3.6]]), &expected);
+    }
+
+    #[test]
+    fn starts_that_are_dated_within_each_other_make_no_panic() {
+        let mut found = run(&[1.0, 6.0], &[1.5, 6.3], 10.0);
+        found.transitions[0].planned_onset_s = 6.5;
+        found.transitions[0].measured_onset_s = Some(9.0);
+        assert!(!lane(&found, "boom", &[[0.0, 10.0]]).is_empty());
     }
 
     #[test]

@@ -44,13 +44,11 @@ pub struct Outputs {
 /// the name given for the command.
 pub fn run(inputs: &Inputs) -> Result<Outputs, LogError> {
     let command = WantedSignal { role: SignalRole::Command, topic: inputs.command.clone() };
-    let read = ReadOptions {
-        sides: Sides::Any,
-        signals: vec![command],
-        measured_velocities: true,
-        ..inputs.read.clone()
-    };
-    let mut recording = read_recording(&inputs.logs, &read)?;
+    let both = ReadOptions { signals: vec![command], measured_velocities: true, ..inputs.read.clone() };
+    let any = ReadOptions { sides: Sides::Any, ..both.clone() };
+    // A side that only its words tell is sought where both are wanted.
+    let mut recording =
+        read_recording(&inputs.logs, &both).or_else(|_| read_recording(&inputs.logs, &any))?;
     let remarks = std::mem::take(&mut recording.remarks).without(Code::PlanIsCommand);
     let planned_topic = &recording.source.planned_topic;
     if recording.plan_is_command && inputs.command.is_none() {
