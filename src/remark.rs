@@ -123,6 +123,22 @@ impl Code {
         Self::SPOILS_RUNS.contains(&self)
     }
 
+    /// How little it says of the run, 0 to 3.
+    fn lightness(self) -> u8 {
+        match self {
+            Self::OtherTime | Self::Stopped => 0,
+            Self::BeforePlan
+            | Self::FrozenSensor
+            | Self::Implausible
+            | Self::LooksLikeDegrees
+            | Self::PlanJumps
+            | Self::UnlikePlan
+            | Self::UnusableStamp => 1,
+            Self::DuplicateStamp | Self::StartOnReceipt => 3,
+            _ => 2,
+        }
+    }
+
     /// The stable name, as in JSON.
     pub fn name(self) -> String {
         serde_json::to_value(self).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
@@ -204,6 +220,11 @@ impl Remarks {
     /// The remarks, in order of first appearance.
     pub fn as_slice(&self) -> &[Remark] {
         &self.list
+    }
+
+    /// The remark that says most of the run; the first of several.
+    pub fn gravest(&self) -> Option<&Remark> {
+        self.list.iter().min_by_key(|remark| remark.code.lightness())
     }
 
     /// Whether there is nothing to remark.

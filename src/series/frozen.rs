@@ -19,10 +19,16 @@ const MANY: usize = 20;
 const JUMPS: f64 = 0.5;
 const FARTHER: f64 = 3.0;
 
+/// Briefer and nearer stretches count where noise is seen at rest, by steps that turn back as often as this share.
+const BRIEF_S: f64 = 0.15;
+const BRIEFLY: f64 = 0.1;
+const TURNS_BACK: f64 = 0.3;
+
 /// The longest stretch of exactly one measured value that lasts while the plan moves on: from, to, samples.
 pub fn frozen(planned: &Track, measured: &Track) -> Option<(f64, f64, u64)> {
-    let longest =
-        stretches(planned, measured).into_iter().reduce(|a, b| if b.len() > a.len() { b } else { a })?;
+    let longest = stretches(planned, measured, FROZEN_S, 1.0)
+        .into_iter()
+        .reduce(|a, b| if b.len() > a.len() { b } else { a })?;
     let t_s = measured.t_s();
     Some((t_s[longest.start], t_s[longest.end - 1], longest.len() as u64))
 }
@@ -31,7 +37,13 @@ pub fn frozen(planned: &Track, measured: &Track) -> Option<(f64, f64, u64)> {
 /// the run is such a stretch.
 pub fn seen(planned: &Track, measured: &Track) -> Option<Track> {
     let q = measured.position();
-    let found = stretches(planned, measured);
+    let mut found = stretches(planned, measured, BRIEF_S, BRIEFLY);
+    if !found.is_empty() && !shows_noise_at_rest(planned, measured) {
+        found = stretches(planned, measured, FROZEN_S, 1.0);
+    }
+    if found.is_empty() {
+        return None;
+    }
     let inside = |k: usize| found.iter().any(|stretch| stretch.contains(&k));
     let elsewhere = || (1..q.len()).filter(|k| !inside(*k) && !inside(*k - 1));
     let same = |k: &usize| q[*k].to_bits() == q[*k - 1].to_bits();
@@ -41,7 +53,7 @@ pub fn seen(planned: &Track, measured: &Track) -> Option<Track> {
         let jump = q.get(stretch.end).map_or(0.0, |after| (after - q[stretch.start]).abs());
         let [from_s, to_s] = [stretch.start, stretch.end - 1].map(|k| measured.t_s()[k]);
         let jumps = jump > JUMPS * moved(planned, from_s, to_s) && jump > FARTHER * farthest;
-        is_noisy && stretch.len() >= MANY || jumps
+        is_noisy && stretch.len() >= MANY || jumps && to_s - from_s > FROZEN_S
     };
     let still: Vec<&Range<usize>> = found.iter().filter(surely).collect();
     let stood: usize = still.iter().map(|stretch| stretch.len()).sum();
@@ -53,20 +65,40 @@ pub fn seen(planned: &Track, measured: &Track) -> Option<Track> {
     measured.keeping(keeps)
 }
 
-/// Stretches of exactly one measured value that last while the plan moves on, by their samples.
-fn stretches(planned: &Track, measured: &Track) -> Vec<Range<usize>> {
+/// Whether steps of a sensor turn back while its plan rests, and seldom repeat: noise does, and no joint on its way.
+fn shows_noise_at_rest(planned: &Track, measured: &Track) -> bool {
+    let (t_s, q) = (measured.t_s(), measured.position());
+    let (mut cursor, mut before, mut counts) = (0, None, [0.0; 3]);
+    for k in 2..q.len() {
+        let plan = planned.held_after(&mut cursor, t_s[k]).position;
+        let rests = before.replace(plan) == Some(plan);
+        let steps = [q[k - 1] - q[k - 2], q[k] - q[k - 1]];
+        // A sensor that stands says nothing of its noise.
+        if rests && steps[0] != 0.0 {
+            let counted = [true, steps[0] * steps[1] < 0.0, steps[1] == 0.0];
+            counts = std::array::from_fn(|of| counts[of] + f64::from(counted[of]));
+        }
+    }
+    let [all, turns_back, repeats] = counts;
+    all >= MANY as f64 && turns_back > TURNS_BACK * all && repeats < REPEATS * all
+}
+
+/// Stretches of exactly one measured value that last so long while the plan moves on, by this share of what is beyond any dead band,
+/// by their samples.
+fn stretches(planned: &Track, measured: &Track, least_s: f64, share: f64) -> Vec<Range<usize>> {
     let (t_s, q) = (measured.t_s(), measured.position());
     let mut found = Vec::new();
     let mut start = 0;
     // A stretch that lasts so long and begins no later than the first sample that is so late holds that sample.
-    while let Some(after) = past(&t_s[start..], FROZEN_S) {
+    while let Some(after) = past(&t_s[start..], least_s) {
         let inside = start + after;
         let same = |i: &usize| q[*i].to_bits() == q[inside].to_bits();
         let first = (start..inside).rev().take_while(same).last().unwrap_or(inside);
         let end = (inside..q.len()).find(|i| !same(i)).unwrap_or(q.len());
-        let long = t_s[end - 1] - t_s[first] > FROZEN_S;
+        let long = t_s[end - 1] - t_s[first] > least_s;
         // A plan that leaves its rest within the last moments meets dead time.
-        if long && plan_moves(planned, t_s[first], t_s[end - 1] - FROZEN_S) {
+        let meets_s = if share < 1.0 { 0.0 } else { least_s };
+        if long && plan_moves(planned, t_s[first], t_s[end - 1] - meets_s, share) {
             found.push(first..end);
         }
         start = end;
@@ -88,12 +120,12 @@ fn past(t_s: &[f64], span_s: f64) -> Option<usize> {
     (at < t_s.len()).then_some(at)
 }
 
-fn plan_moves(planned: &Track, from_s: f64, to_s: f64) -> bool {
+fn plan_moves(planned: &Track, from_s: f64, to_s: f64, share: f64) -> bool {
     let dead = match planned.kind() {
         JointKind::Turns => FROZEN_PLAN_RAD,
         JointKind::Slides => FROZEN_PLAN_M,
     };
-    moved(planned, from_s, to_s) > dead
+    moved(planned, from_s, to_s) > share * dead
 }
 
 /// How far a plan moves between two instants.
@@ -136,6 +168,11 @@ mod tests {
         // A joint that stands at a stop, by a sensor without noise, and one that leaves a second late.
         assert_eq!(whole(&|t| plan(t - 0.1).min(0.5)), None);
         assert_eq!(whole(&|t| plan(t - 1.0)), None);
+        // Briefly at a start, of a sensor that shows noise at rest.
+        let scatter = |t: f64| 1e-4 * (1e7 * t * t).sin();
+        let start = |t: f64| if (2.2..2.7).contains(&t) { scatter(2.2) } else { plan(t - 0.3) + scatter(t) };
+        assert_eq!(whole(&start), Some(951));
+        assert_eq!(whole(&|t| plan(t - 0.3) + scatter(t)), None);
         // To the end of the run.
         let ends = |t: f64| if t < 6.0 { plan(t) + noise(t) } else { 0.8 };
         assert_eq!(whole(&ends), Some(601));

@@ -18,7 +18,7 @@ use super::{
     select_topics::Choice,
     spoilt,
     time_base::time_base,
-    trajectories, turns, unlike, unset,
+    trajectories, turns, unlike, unmeasured, unset,
     window::nothing_in,
 };
 use crate::{
@@ -118,6 +118,7 @@ pub(super) fn assemble(
         repeated::of_command(&mut command.series, &mut remarks);
         held::of_command(command, sides[1].1, &mut remarks);
     }
+    unmeasured::of_sides(sides, &mut remarks);
     let stood_s = spoilt::of_sides([sides[0].1, sides[1].1], command.as_ref(), options, &mut remarks);
     quality::of_pairs([sides[0].1, sides[1].1], options, assembly.kinds.stated(), &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;

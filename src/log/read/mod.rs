@@ -14,6 +14,7 @@ mod frames;
 mod held;
 mod indexed;
 mod joints;
+mod jumps;
 pub(super) mod lines;
 mod lost;
 pub(super) mod origin;
@@ -36,6 +37,7 @@ mod topics;
 mod trajectories;
 mod turns;
 mod unlike;
+mod unmeasured;
 mod unset;
 mod window;
 

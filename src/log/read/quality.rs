@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, f64::consts::TAU};
 
-use super::turns::turns;
+use super::{jumps, turns::turns};
 use crate::{
     log::{
         options::{ReadOptions, TimeBase},
@@ -170,72 +170,11 @@ pub(super) fn of_pairs(
     remarks: &mut Remarks,
 ) {
     for track in &planned.tracks {
-        of_plan(track, remarks);
+        jumps::of_plan(track, remarks);
         match measured.track(track.name()) {
             None => unmeasured(track.name(), remarks),
             Some(measured) => of_pair(track, measured, (options, stated.contains(track.name())), remarks),
         }
-    }
-}
-
-/// A step within one sample that no joint can make: rad or m, and rad/s or m/s; larger than the steps beside it by the
-/// factor.
-const LEAST_STEP: f64 = 0.2;
-const STEP_SPEED: f64 = 20.0;
-const STEP_ALONE: f64 = 10.0;
-
-/// Remarks on a plan that jumps.
-fn of_plan(track: &Track, remarks: &mut Remarks) {
-    let Jumps { count, most, at_s } = Jumps::of(track, |_| true);
-    let (name, unit) = (track.name(), track.kind().unit());
-    let message = format!(
-        "steps of the plan of {name} within one sample, the largest of {most:.3} {unit} at {at_s:.2} s: the plan itself \
-         jumps, which no joint can follow at once, so its error begins with the step"
-    );
-    remarks.add(Code::PlanJumps, count, message);
-}
-
-/// Remarks on a measurement that jumps and stays there, while there is a plan.
-fn of_measurement(planned: &Track, track: &Track, remarks: &mut Remarks) {
-    let Jumps { count, most, at_s } = Jumps::of(track, |t_s| planned.at(t_s).is_some());
-    let (name, unit) = (track.name(), track.kind().unit());
-    let message = format!(
-        "steps of the measured {name} within one sample, the largest of {most:.3} {unit} at {at_s:.2} s: no joint moves \
-         so, and errors there are the sensor's (a fault value, a lost reference, another zero)"
-    );
-    remarks.add(Code::Implausible, count, message);
-}
-
-/// Steps of a track that no joint can make.
-struct Jumps {
-    count: u64,
-    /// The largest, rad or m, and when, s.
-    most: f64,
-    at_s: f64,
-}
-
-impl Jumps {
-    /// Those at instants that count.
-    fn of(track: &Track, counts: impl Fn(f64) -> bool) -> Self {
-        let (t_s, position) = (track.t_s(), track.position());
-        let mut found = Self { count: 0, most: 0.0, at_s: 0.0 };
-        if position.windows(2).fold(true, |calm, w| calm & ((w[1] - w[0]).abs() <= LEAST_STEP)) {
-            return found;
-        }
-        for part in track.segments() {
-            let step = |k: usize| (position[k] - position[k - 1]).abs();
-            for k in part.start + 1..part.end {
-                let beside = || [k - 1, k + 1].into_iter().filter(|k| (part.start + 1..part.end).contains(k));
-                let far = step(k) > LEAST_STEP.max(STEP_SPEED * (t_s[k] - t_s[k - 1]));
-                if far && step(k) > STEP_ALONE * beside().map(step).fold(0.0, f64::max) && counts(t_s[k]) {
-                    found.count += 1;
-                    if step(k) > found.most {
-                        (found.most, found.at_s) = (step(k), t_s[k]);
-                    }
-                }
-            }
-        }
-        found
     }
 }
 
@@ -260,7 +199,7 @@ fn of_pair(
     }
     // Full turns are told of elsewhere.
     if turns(measured) == 0 {
-        of_measurement(planned, measured, remarks);
+        jumps::of_measurement(planned, measured, remarks);
     }
     if let Some((from_s, to_s, samples)) = frozen(planned, measured) {
         let name = planned.name();
@@ -280,9 +219,6 @@ pub(super) fn looks_like_degrees(ratio: f64) -> bool {
     (ratio / DEGREES_IN_RADIAN - 1.0).abs() < RATIO_TOLERANCE
 }
 
-/// What is the matter where headers state units and the ranges do not agree.
-const WRONG_HEADER: &str = "the header of one of the two says a wrong unit: put that right";
-
 /// Remarks on angles that look like degrees.
 fn of_units(
     planned: &Track,
@@ -293,19 +229,26 @@ fn of_units(
     let (plan_rad, angle_rad) = (span_rad(planned.position()), span_rad(measured.position()));
     let name = planned.name();
     let drop = |option: &str, of: &str| format!("{option} does that to {of} in radians: drop it");
-    let say = |hint: &str| if stated { WRONG_HEADER } else { hint }.to_owned();
+    // Headers, or an option of the import, state units, and the ranges do not agree.
+    let say = |hint: &str, side: &str| {
+        let wrong = format!(
+            "one of the two was read in a wrong unit, by its header or an option: put that right, or import it as degrees with {side} \
+             {name}=57.29578*COLUMN"
+        );
+        if stated { wrong } else { hint.to_owned() }
+    };
     let message = if looks_like_degrees(angle_rad / plan_rad) {
         let cause = if options.planned_in_degrees {
             drop("--planned-degrees", "a plan")
         } else {
-            say("measured in degrees? then say --measured-degrees")
+            say("measured in degrees? then say --measured-degrees", "--planned")
         };
         format!("{name} spans 57.3 times its plan: {cause}")
     } else if looks_like_degrees(plan_rad / angle_rad) {
         let cause = if options.measured_in_degrees {
             drop("--measured-degrees", "a measurement")
         } else {
-            say("in degrees? then say --planned-degrees")
+            say("in degrees? then say --planned-degrees", "--measured")
         };
         format!("the plan of {name} spans 57.3 times the measurement: {cause}")
     } else if plan_rad.min(angle_rad) > TURN_AND_A_HALF_RAD && !options.continuous.iter().any(|c| c == name) {
@@ -362,7 +305,7 @@ mod tests {
     #[test]
     fn a_sensor_that_stands_still_while_the_plan_moves_is_noticed() {
         let frozen = |t: f64| if (1.0..2.0).contains(&t) { 0.2 } else { 0.2 * t };
-        assert_eq!(codes(track(|t| 0.2 * t), track(frozen)), [Code::FrozenSensor]);
+        assert_eq!(codes(track(|t| 0.2 * t), track(frozen)), [Code::Implausible, Code::FrozenSensor]);
         assert_eq!(codes(track(|_| 0.0), track(|_| 0.0)), []);
     }
 }

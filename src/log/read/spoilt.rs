@@ -25,6 +25,13 @@ pub(super) fn of_sides(
     {
         stops.clear();
     }
+    // Joints that are late rest late.
+    if !stops.is_empty()
+        && command.is_none()
+        && let Some(behind) = other_time::Behind::of(planned, measured)
+    {
+        stops.retain(|stop| !behind.grows_outside(stop.stood_s));
+    }
     let in_time = stops.iter().find(|stop| stop.in_time);
     if in_time.is_none()
         && let Some(message) = other_time([planned, measured], command, one_clock)

@@ -30,7 +30,7 @@ const OFF: f64 = 0.2;
 /// For so long after a stop a plan may go on, and before a start: machines lag, s.
 const LAGS_S: f64 = 1.0;
 
-/// What was found, from when to when the machine stood, s, and whether the run had followed its plan at the same time before: what had
+/// What was found, from when to when the machine stood, s (infinite where it did from the first or to the last), and whether the run had followed its plan at the same time before: what had
 /// not may be late.
 pub(super) struct Stop {
     pub(super) stood_s: [f64; 2],
@@ -51,33 +51,65 @@ pub(super) fn stops(planned: &Series, measured: &Series) -> Vec<Stop> {
         return Vec::new();
     }
     let mut found = Vec::new();
-    for [from_s, to_s] in standing(&joints, [first_s, last_s]) {
-        let for_good = to_s + STEP_S > last_s;
+    for [stands_s, until_s] in standing(&joints, [first_s, last_s]) {
+        let (at_first, for_good) = (stands_s < first_s + STEP_S, until_s + STEP_S > last_s);
+        let from_s = comes_to_rest_s(&joints, stands_s);
+        let to_s = if at_first { leaves_s(&joints, until_s) } else { until_s };
         // One that stands where its plan rests may be late.
         let on_its_way = joints.iter().any(|(plan, _)| {
-            travel(plan, [from_s - STEP_S, from_s + STEP_S]) > WAY * least(plan.kind(), MOVES)
+            travel(plan, [stands_s - STEP_S, stands_s + STEP_S]) > WAY * least(plan.kind(), MOVES)
         });
         let left_behind = |joint: &&(&Track, &Track)| match (for_good, on_its_way) {
-            (true, true) => goes_on(joint, [from_s, to_s]) || stays_off(joint, [from_s, last_s]),
-            (false, true) => goes_on(joint, [from_s, to_s]) || passes(joint, [from_s, to_s]),
-            (true, false) => goes_on(joint, [from_s, to_s]),
+            _ if at_first => goes_on(joint, [stands_s - LAGS_S, to_s]),
+            (true, true) => goes_on(joint, [stands_s, to_s]) || stays_off(joint, [stands_s, last_s]),
+            (false, true) => goes_on(joint, [stands_s, to_s]) || passes(joint, [stands_s, to_s]),
+            (true, false) => goes_on(joint, [stands_s, to_s]),
             (false, false) => false,
         };
         let names: Vec<&str> = joints.iter().filter(left_behind).map(|(plan, _)| plan.name()).collect();
-        if names.is_empty() {
+        // One joint that leaves late at first has a dead band.
+        if names.is_empty() || at_first && names.len() < 2 {
             continue;
         }
-        let until = if for_good { " on".to_owned() } else { format!(" until {to_s:.1} s") };
-        let message = format!(
-            "no joint moves from {from_s:.1} s{until}, though the plan of {} goes on: the machine was stopped (emergency \
-             stop, fault, hold)",
-            names.join(", ")
-        );
+        let when = match (at_first, for_good) {
+            (true, _) => format!("until {to_s:.1} s"),
+            (false, true) => format!("from {from_s:.1} s on"),
+            (false, false) => format!("from {from_s:.1} s until {to_s:.1} s"),
+        };
+        let what = if at_first {
+            "was not ready (pump or drive off, not enabled)"
+        } else {
+            "was stopped (emergency stop, fault, hold)"
+        };
+        let names = names.join(", ");
+        let message =
+            format!("no joint moves {when}, though the plan of {names} goes on: the machine {what}");
         let late_s = *late_s.get_or_insert_with(|| late_s_of(planned, measured));
-        let stood_s = [from_s, if for_good { f64::INFINITY } else { to_s }];
-        found.push(Stop { stood_s, message, in_time: followed(&joints, [first_s, from_s], late_s) });
+        let stood_s =
+            [if at_first { f64::NEG_INFINITY } else { from_s }, if for_good { f64::INFINITY } else { to_s }];
+        found.push(Stop { stood_s, message, in_time: followed(&joints, [first_s, stands_s], late_s) });
     }
     found
+}
+
+/// When the first joint leaves where it stood, s.
+fn leaves_s(joints: &[(&Track, &Track)], stood_s: f64) -> f64 {
+    let until = |(_, came): &(&Track, &Track)| {
+        let (place, near) = (came.held_at(stood_s).position, least(came.kind(), STANDS));
+        let after = came.t_s().iter().zip(came.position()).skip_while(|(t_s, _)| **t_s < stood_s);
+        after.take_while(|(_, q)| (*q - place).abs() <= near).last().map(|(t_s, _)| *t_s)
+    };
+    joints.iter().filter_map(until).fold(f64::INFINITY, f64::min).max(stood_s)
+}
+
+/// When the last joint came to where it then stands, s.
+fn comes_to_rest_s(joints: &[(&Track, &Track)], stands_s: f64) -> f64 {
+    let since = |(_, came): &(&Track, &Track)| {
+        let (place, near) = (came.held_at(stands_s).position, least(came.kind(), STANDS));
+        let before = came.t_s().iter().zip(came.position()).rev().skip_while(|(t_s, _)| **t_s > stands_s);
+        before.take_while(|(_, q)| (*q - place).abs() <= near).last().map(|(t_s, _)| *t_s)
+    };
+    joints.iter().filter_map(since).fold(f64::NEG_INFINITY, f64::max).min(stands_s)
 }
 
 fn least(kind: JointKind, of: [f64; 2]) -> f64 {
@@ -207,6 +239,11 @@ mod tests {
 
     /// The same of one that is so far at each instant.
     fn of_course(ends_s: f64, course: impl Fn(f64) -> f64) -> Vec<String> {
+        let stops = stops_of(ends_s, course).into_iter();
+        stops.filter(|stop| stop.in_time).map(|stop| stop.message).take(1).collect()
+    }
+
+    fn stops_of(ends_s: f64, course: impl Fn(f64) -> f64) -> Vec<Stop> {
         let plan = |size: f64, t: f64| {
             size * (((t - 3.0) / 10.0).clamp(0.0, 1.0) - ((t - 15.0) / 5.0).clamp(0.0, 0.4))
         };
@@ -219,8 +256,15 @@ mod tests {
             };
             Series { tracks: vec![track("swing", 1.0), track("boom", -0.5)] }
         };
-        let stops = stops(&of(30.0, &|t| t), &of(ends_s, &course));
-        stops.into_iter().filter(|stop| stop.in_time).map(|stop| stop.message).take(1).collect()
+        stops(&of(30.0, &|t| t), &of(ends_s, &course))
+    }
+
+    #[test]
+    fn a_machine_that_was_not_ready_is_told() {
+        let found = stops_of(30.0, |t| if t < 6.0 { 0.0 } else { t - 0.2 });
+        let one = found.first().map_or("", |stop| stop.message.as_str());
+        assert!(one.contains("no joint moves until 6.") && one.contains("not ready"), "{one}");
+        assert!(found[0].stood_s[0].is_infinite());
     }
 
     #[test]

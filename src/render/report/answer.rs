@@ -149,7 +149,7 @@ fn whole(replay: &Replay) -> Option<Fact> {
 /// How many doubts about the data there are, and the first.
 fn doubts(report: &Report) -> Option<Fact> {
     let remarks = report.remarks.as_slice();
-    let first = remarks.first()?;
+    let first = report.remarks.gravest()?;
     let more = match remarks.len() - 1 {
         0 => String::new(),
         more => format!(" (and {more} more: `report` lists them)"),

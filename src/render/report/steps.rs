@@ -8,7 +8,7 @@ use crate::{
     },
     series::JointKind,
     workflow::report::{
-        Fault, Report,
+        Fault, Leaves, Report,
         advice::{Advice, advice},
     },
 };
@@ -53,23 +53,29 @@ pub(super) fn named(report: &Report) -> String {
     report.paths.iter().map(argument).collect::<Vec<_>>().join(" ")
 }
 
-/// What shows the run, up to where the machine stopped.
+/// What shows the run, without the time in which the machine stood.
 pub(super) fn without(fault: &Fault, report: &Report) -> String {
     let logs = named(report);
-    match fault {
-        Fault::Stopped { from_s, .. } => command(&["report", &logs, "--to", &format!("{from_s:.1}")]),
-        Fault::Dead { .. } => command(&["report", &logs]),
+    match fault.leaves_s() {
+        Some(Leaves::To(s)) => command(&["report", &logs, "--to", &format!("{s:.1}")]),
+        Some(Leaves::From(s)) => command(&["report", &logs, "--from", &format!("{s:.1}")]),
+        None => command(&["report", &logs]),
     }
 }
 
 /// What happened, in a few words, and more of it.
 pub(super) fn told(fault: &Fault) -> [String; 2] {
     match fault {
-        Fault::Stopped { from_s, to_s: None } => [
+        Fault::Stopped { from_s: None, to_s } => [
+            format!("The machine stood until {:.1} s", to_s.unwrap_or_default()),
+            "Its plan went on: it was not ready (pump or drive off, not enabled). Figures of the whole run count the error of that time."
+                .to_owned(),
+        ],
+        Fault::Stopped { from_s: Some(from_s), to_s: None } => [
             format!("The machine stopped at {from_s:.1} s"),
             "Its plan went on. Figures of the whole run count the error from then on.".to_owned(),
         ],
-        Fault::Stopped { from_s, to_s: Some(to_s) } => [
+        Fault::Stopped { from_s: Some(from_s), to_s: Some(to_s) } => [
             format!("The machine stood from {from_s:.1} to {to_s:.1} s"),
             "Its plan went on. Figures of the whole run count the error of that time.".to_owned(),
         ],
@@ -113,10 +119,13 @@ pub(super) fn words(step: &Advice, limit: &str, learns: bool) -> String {
             "Clear the doubts about the data first: {} below.",
             counted(*kinds, "remark")
         ),
-        Advice::SeeTo(fault @ Fault::Stopped { .. }) => format!(
-            "{}: find out why (emergency stop, fault of the controller, hold). No command is made from such a run. Up to then it did:",
-            told(fault)[0]
-        ),
+        Advice::SeeTo(fault @ Fault::Stopped { from_s, .. }) => {
+            let (why, rest) = match from_s {
+                Some(_) => ("emergency stop, fault of the controller, hold", "Up to then it did"),
+                None => ("pump or drive off, not enabled", "From then on it did"),
+            };
+            format!("{}: find out why ({why}). No command is made from such a run. {rest}:", told(fault)[0])
+        }
         Advice::SeeTo(fault @ Fault::Dead { .. }) => format!(
             "{}: look at enable signal, valve, brake and sensor before any command is made from this run.",
             told(fault)[0]

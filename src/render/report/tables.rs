@@ -18,7 +18,7 @@ use crate::{
     replay::{
         Answer, JOINT, JointReplay, ONSET_DELAY_LIMIT, Profiles, Replay, Swing, TRANSITION, Transition,
     },
-    workflow::report::{Fault, GateResult, Report, Travel},
+    workflow::report::{Backward, Fault, GateResult, Report, Travel},
 };
 
 /// Everything a person reads of a report; `most` is how many transitions to list.
@@ -91,9 +91,20 @@ fn findings(report: &Report) -> Vec<String> {
     lines.extend(Together::all(replay).iter().flat_map(Together::findings));
     lines.extend(replay.joints.iter().filter_map(|joint| stray(report, joint)));
     lines.extend(replay.joints.iter().filter_map(|joint| one_way(replay, joint)));
+    lines.extend(report.backward().iter().map(sinks));
     lines.extend(replay.joints.iter().flat_map(|joint| at_rest(replay, joint)));
     lines.extend(swings(report));
     lines
+}
+
+/// A joint that first goes the other way.
+fn sinks(Backward { joint, kind, count: [count, starts], most, at_s }: &Backward) -> String {
+    format!(
+        "{joint} goes against its plan before it starts, in {count} of {}: by {} at most, where it is to start at {at_s:.2} s. That is no \
+         dead band: the load sinks before it is held (counterbalance or load-holding valve, leak, trapped pressure).",
+        counted(*starts, "timed start"),
+        position(*kind, *most)
+    )
 }
 
 /// Joints that swing though their plans do not.

@@ -9,7 +9,7 @@ use crate::{
     fit::Observation,
     log::{Input, LogError, LogFiles, ReadOptions, Recording, SignalRole},
     remark::Code,
-    series::{Track, even_instants, seen},
+    series::{Track, even_instants},
 };
 
 /// Why a run cannot be fitted.
@@ -22,7 +22,7 @@ pub struct ObserveFailure {
     pub source: LogError,
 }
 
-/// Reads one run, wherever its files are, in one pass; where a sensor stood while its joint moved, nothing was measured.
+/// Reads one run, wherever its files are, in one pass.
 ///
 /// # Errors
 ///
@@ -35,16 +35,6 @@ pub fn observe(inputs: Vec<Input>, read: &ReadOptions) -> Result<Recording, Obse
     let recording = recording.and_then(of_joints);
     let mut recording = recording.map_err(|source| ObserveFailure { path, source })?;
     on_even_instants(&mut recording);
-    let Recording { planned, measured, remarks, .. } = &mut recording;
-    for track in &mut measured.tracks {
-        let Some(own) = planned.track(track.name()).and_then(|plan| seen(plan, track)) else { continue };
-        let message = format!(
-            "what the sensor of {} repeats while its joint moves was not measured: left out",
-            track.name()
-        );
-        remarks.add(Code::FrozenSensor, (track.len() - own.len()) as u64, message);
-        *track = own;
-    }
     Ok(recording)
 }
 

@@ -126,7 +126,8 @@ impl std::fmt::Display for Said<'_> {
             ),
             Broken::Halted { .. } => write!(
                 f,
-                "the run was stopped there, and no arm stops at once; leave the log out, and give one of a whole run"
+                "the run was stopped there, and no arm stops at once; leave the log out and give one of a whole run, or cut that out of \
+                 this one with --from and --to"
             ),
             Broken::Hole { .. } => write!(
                 f,

@@ -3,14 +3,28 @@
 use super::outcome::{Fault, Report};
 use crate::replay::{JointReplay, Transition};
 
-/// Errors that are nowhere larger than so many standard deviations of the noise are noise.
+/// Errors that are nowhere larger than so many standard deviations of the noise, and than so many root mean square, are noise.
 const HIDES: f64 = 6.0;
+const HARDLY_MORE: f64 = 1.15;
+
+/// A machine that is stopped takes so long at most to come to rest, s.
+const COMES_TO_REST_S: f64 = 0.5;
+
+/// What is left of a run, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Leaves {
+    /// From an instant on, s.
+    From(f64),
+    /// To an instant, s.
+    To(f64),
+}
 
 impl Fault {
     /// `stood_s`: from when to when the machine stood.
     pub(super) fn of(report: &Report, stood_s: Option<[f64; 2]>) -> Option<Self> {
         if let Some([from_s, to_s]) = stood_s {
-            return Some(Self::Stopped { from_s, to_s: Some(to_s).filter(|to_s| to_s.is_finite()) });
+            let [from_s, to_s] = [from_s, to_s].map(|s| Some(s).filter(|s| s.is_finite()));
+            return Some(Self::Stopped { from_s, to_s });
         }
         let joints = report.replay.joints.iter();
         let dead: Vec<&JointReplay> = joints.filter(|joint| report.stands(joint)).collect();
@@ -20,11 +34,21 @@ impl Fault {
         })
     }
 
+    /// The part of the run that it leaves as it was, from or to an instant, s, which is all that there is of some.
+    pub fn leaves_s(&self) -> Option<Leaves> {
+        match self {
+            Self::Stopped { from_s: Some(from_s), .. } => Some(Leaves::To(from_s - COMES_TO_REST_S)),
+            Self::Stopped { to_s, .. } => to_s.map(Leaves::From),
+            Self::Dead { .. } => None,
+        }
+    }
+
     /// Whether it explains what a start looks like.
     fn explains(&self, start: &Transition) -> bool {
         match self {
             Self::Stopped { from_s, to_s } => {
-                start.window_s[1] > *from_s && to_s.is_none_or(|to_s| start.window_s[0] < to_s)
+                from_s.is_none_or(|from_s| start.window_s[1] > from_s)
+                    && to_s.is_none_or(|to_s| start.window_s[0] < to_s)
             }
             Self::Dead { joints, .. } => joints.contains(&start.joint),
         }
@@ -46,7 +70,10 @@ impl Report {
     /// The joint with the largest error, where that of all is hardly more than the noise of their sensors.
     pub fn only_noise(&self) -> Option<&JointReplay> {
         let joints = &self.replay.joints;
-        let noisy = joints.iter().all(|joint| joint.tracking_error.peak <= HIDES * joint.noise.sigma);
+        let noisy = joints.iter().all(|joint| {
+            let (error, sigma) = (&joint.tracking_error, joint.noise.sigma);
+            error.peak <= HIDES * sigma && error.rms <= HARDLY_MORE * sigma
+        });
         let by_band =
             |joint: &JointReplay| joint.tracking_error.rms / self.replay.rules.sizes(joint.kind).settle_band;
         let largest = joints.iter().max_by(|a, b| by_band(a).total_cmp(&by_band(b)));

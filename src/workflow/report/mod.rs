@@ -2,6 +2,7 @@
 
 pub mod advice;
 mod analysis;
+mod backward;
 mod document;
 mod failure;
 mod fault;
@@ -17,8 +18,10 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 pub use analysis::{Analysis, analyse};
 use analysis::{aligned, taken};
+pub use backward::Backward;
 pub use document::Document;
 pub use failure::ReportFailure;
+pub use fault::Leaves;
 #[cfg(feature = "parquet")]
 pub(in crate::workflow) use findings::reported;
 pub use findings::{Findings, analysis_id, findings};

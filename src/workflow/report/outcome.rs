@@ -36,8 +36,8 @@ pub struct Alignment {
 pub enum Fault {
     /// The machine stood while its plan went on.
     Stopped {
-        /// From when, s.
-        from_s: f64,
+        /// From when, s; `None` if from the beginning.
+        from_s: Option<f64>,
         /// Until when, s; `None` if to the end.
         to_s: Option<f64>,
     },

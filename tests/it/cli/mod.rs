@@ -32,6 +32,7 @@ mod pasted;
 #[cfg(unix)]
 mod pipes;
 mod plan;
+mod range_end;
 mod record;
 #[cfg(unix)]
 mod record_senders;
@@ -52,6 +53,7 @@ mod telescope;
 mod terminal;
 mod tool;
 mod trajectory;
+mod unnamed;
 mod view;
 #[cfg(unix)]
 mod watch;

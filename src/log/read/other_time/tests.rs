@@ -28,6 +28,24 @@ fn clocks_that_differ_and_another_speed_are_told() {
 }
 
 #[test]
+fn a_run_that_is_slowed_on_the_way_falls_behind() {
+    let slowed = |from: f64, to: f64, pace: f64| {
+        move |t: f64| t.min(from) + pace * (t.clamp(from, to) - from) + (t - to).max(0.0) - 0.3
+    };
+    for (from, to, pace, told) in [
+        (7.0, 11.0, 0.3, "by 2.8 s from about"),
+        (0.0, 12.0, 0.7, "fall behind their plan by"),
+        (8.0, 40.0, 0.5, "until the end"),
+    ] {
+        let found = said(slowed(from, to, pace));
+        assert!(found.as_ref().is_some_and(|one| one.contains(told)), "{pace}: {found:?}");
+    }
+    // Held on the way, and by a lag alone.
+    assert!(said(|t| t.min(7.0).max(t - 3.0)).is_some_and(|one| one.contains("fall behind")));
+    assert_eq!(said(|t| t - 0.6), None);
+}
+
+#[test]
 fn joints_that_leave_in_time_and_lead_later_are_on_no_other_clock() {
     // Speed feed-forward of one and a half behind a lag.
     let plan = series(|t| t);

@@ -1,0 +1,183 @@
+//! Steps within one sample that no joint can make.
+
+use crate::{
+    math::quantile,
+    remark::{Code, Remarks},
+    series::{JointKind, Track},
+};
+
+/// A step of a plan that no joint can follow: rad or m, and rad/s or m/s; larger than the steps beside it by the factor.
+const LEAST_STEP: f64 = 0.2;
+const STEP_SPEED: f64 = 20.0;
+const STEP_ALONE: f64 = 10.0;
+
+/// A measured step that no joint makes is so many times the usual one, which nineteen of twenty stay below, and that of its plan,
+/// and no less than this, rad and m; so many steps tell.
+const BY_USUAL: f64 = 5.0;
+const USUAL: f64 = 0.95;
+const LEAST: [f64; 2] = [0.01, 0.005];
+const TELL: usize = 20;
+
+/// So many are none of a sensor that is held.
+const FEW_STEPS: u64 = 10;
+
+/// So many bad samples in a row that come back to within this share of their distance are left out.
+const FEW: usize = 5;
+const BACK: f64 = 0.1;
+
+/// Remarks on a plan that jumps.
+pub(super) fn of_plan(track: &Track, remarks: &mut Remarks) {
+    let far = |step: f64, lasts_s: f64| step > LEAST_STEP.max(STEP_SPEED * lasts_s);
+    let Some(Jumps { count, most, at_s }) = Jumps::of(track, LEAST_STEP, far) else { return };
+    let message = format!(
+        "steps of the plan of {} within one sample, the largest of {} at {at_s:.2} s: the plan itself jumps, which no joint can follow \
+         at once, so its error begins with the step",
+        track.name(),
+        track.kind().says(most)
+    );
+    remarks.add(Code::PlanJumps, count, message);
+}
+
+/// Remarks on a measurement that jumps and stays there, while there is a plan.
+pub(super) fn of_measurement(planned: &Track, track: &Track, remarks: &mut Remarks) {
+    let Some(least) = least_step(planned, track) else { return };
+    let far = |step: f64, lasts_s: f64| step > LEAST_STEP.max(STEP_SPEED * lasts_s);
+    // A sensor that is held makes many.
+    let few = Jumps::of(track, least, |_, _| true).filter(|jumps| jumps.count <= FEW_STEPS);
+    let found = few.or_else(|| Jumps::of(track, LEAST_STEP, far));
+    let Some(Jumps { count, most, at_s }) = found.filter(|jumps| planned.at(jumps.at_s).is_some()) else {
+        return;
+    };
+    let message = format!(
+        "steps of the measured {} within one sample, the largest of {} at {at_s:.2} s: no joint moves so, and errors from there on are \
+         the sensor's (a fault value, a lost reference, another zero, a slip, samples that were held)",
+        track.name(),
+        track.kind().says(most)
+    );
+    remarks.add(Code::Implausible, count, message);
+}
+
+/// A measurement without few samples in a row that lie where no joint goes and comes back from; `None` where there are none.
+pub(super) fn without_excursions(planned: &Track, track: &Track) -> Option<Track> {
+    let q = track.position();
+    let least = least_step(planned, track)?;
+    let mut bad = Vec::new();
+    for part in track.segments() {
+        let mut k = part.start + 1;
+        while k + 1 < part.end {
+            let far = |at: usize| (q[at] - q[k - 1]).abs();
+            let away = (k..(k + FEW).min(part.end - 1)).take_while(|at| far(*at) > least);
+            let after = away.last().map(|last| last + 1);
+            // As near as it began, by a step back, and after a rest or a motion that has none.
+            let nearest = after.map(|after| (k..after).map(far).fold(f64::INFINITY, f64::min));
+            match after.zip(nearest).filter(|(after, nearest)| far(*after) < BACK * nearest) {
+                Some((after, _)) => {
+                    bad.extend(k..after);
+                    k = after + 1;
+                }
+                None => k += 1,
+            }
+        }
+    }
+    if bad.is_empty() { None } else { track.keeping(|k| bad.binary_search(&k).is_err()) }
+}
+
+/// What no joint moves within one sample, by its plan and what it usually does; `None` where none of its steps is as large.
+fn least_step(planned: &Track, track: &Track) -> Option<f64> {
+    let q = track.position();
+    let least = LEAST[usize::from(track.kind() == JointKind::Slides)];
+    if q.windows(2).fold(true, |calm, w| calm & ((w[1] - w[0]).abs() <= least)) {
+        return None;
+    }
+    let steps: Vec<f64> = q.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0).collect();
+    if steps.len() < TELL {
+        return None;
+    }
+    let mut cursor = 0;
+    let plan = track.t_s().iter().map(|t_s| planned.held_after(&mut cursor, *t_s).position);
+    let plan: Vec<f64> = plan.collect();
+    let planned = plan.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0).collect();
+    let usual = [steps, planned].map(|steps: Vec<f64>| quantile(steps, USUAL));
+    Some(least.max(BY_USUAL * usual[0].max(usual[1])))
+}
+
+/// Steps of a track that no joint can make.
+struct Jumps {
+    count: u64,
+    /// The largest, rad or m, and when, s.
+    most: f64,
+    at_s: f64,
+}
+
+impl Jumps {
+    /// Those of more than this, of which this holds by their size and how long they last, s, and that stand alone; `None` of none.
+    fn of(track: &Track, least: f64, far: impl Fn(f64, f64) -> bool) -> Option<Self> {
+        let (t_s, position) = (track.t_s(), track.position());
+        let mut found = Self { count: 0, most: 0.0, at_s: 0.0 };
+        if position.windows(2).fold(true, |calm, w| calm & ((w[1] - w[0]).abs() <= least)) {
+            return None;
+        }
+        for part in track.segments() {
+            let step = |k: usize| (position[k] - position[k - 1]).abs();
+            for k in part.start + 1..part.end {
+                let beside = || [k - 1, k + 1].into_iter().filter(|k| (part.start + 1..part.end).contains(k));
+                let far = step(k) > least && far(step(k), t_s[k] - t_s[k - 1]);
+                if far && step(k) > STEP_ALONE * beside().map(step).fold(0.0, f64::max) {
+                    found.count += 1;
+                    if step(k) > found.most {
+                        (found.most, found.at_s) = (step(k), t_s[k]);
+                    }
+                }
+            }
+        }
+        (found.count > 0).then_some(found)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(t: f64) -> f64 {
+        0.2 * (t - 2.0).clamp(0.0, 4.0)
+    }
+
+    fn noise(t: f64) -> f64 {
+        1e-4 * (1e7 * t * t).sin()
+    }
+
+    fn of(course: impl Fn(f64) -> f64) -> (Remarks, Option<usize>) {
+        let track = |at: &dyn Fn(f64) -> f64| Track::sampled("a", 1000, at);
+        let (planned, measured) = (track(&plan), track(&|t| course(t) + noise(t)));
+        let mut remarks = Remarks::default();
+        of_measurement(&planned, &measured, &mut remarks);
+        (remarks, without_excursions(&planned, &measured).map(|own| own.len()))
+    }
+
+    #[test]
+    fn a_slip_is_told_and_what_joints_do_is_not() {
+        let (remarks, left) = of(|t| plan(t - 0.2) - if t < 7.0 { 0.0 } else { 0.05 });
+        assert_eq!((remarks.as_slice().len(), left), (1, None));
+        assert!(
+            remarks.as_slice()[0].message.contains("2.8") && remarks.as_slice()[0].message.contains("7.00 s")
+        );
+        let stairs = |t: f64| plan((10.0 * (t - 0.2)).floor() / 10.0);
+        let breaks_away =
+            |t: f64| plan(t - 0.2) + if t < 3.0 { 0.0 } else { 0.02 * (t - 3.0).min(0.1) / 0.1 };
+        for course in [&(|t: f64| plan(t - 0.2)) as &dyn Fn(f64) -> f64, &stairs, &breaks_away] {
+            let (remarks, left) = of(course);
+            assert!(remarks.as_slice().is_empty() && left.is_none(), "{remarks:?} {left:?}");
+        }
+    }
+
+    #[test]
+    fn few_bad_samples_are_left_out_also_up_and_down() {
+        let bad = |t: f64| match (t * 100.0).round() as i32 {
+            400 => 0.5,
+            401 => -0.5,
+            700..=702 => 0.3,
+            _ => 0.0,
+        };
+        assert_eq!(of(|t| plan(t - 0.2) + bad(t)).1, Some(995));
+    }
+}

@@ -1,0 +1,57 @@
+//! Joints that first go the other way when they are to start: loads sink before their valves hold them.
+
+use super::outcome::Report;
+use crate::{
+    replay::{Kind, Transition},
+    series::JointKind,
+};
+
+/// What counts, by the band in which an error is settled and by standard deviations of the noise.
+const BANDS: f64 = 3.0;
+const SIGMAS: f64 = 8.0;
+
+/// How a joint first goes the other way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Backward {
+    /// The joint.
+    pub joint: String,
+    /// Whether it turns or slides.
+    pub kind: JointKind,
+    /// In how many of its starts with a time, and how many these are.
+    pub count: [usize; 2],
+    /// How far at most, rad or m, and at which planned start, s.
+    pub most: f64,
+    /// When that start is planned, s.
+    pub at_s: f64,
+}
+
+impl Report {
+    /// The joints that do so.
+    pub fn backward(&self) -> Vec<Backward> {
+        let of = |joint: &crate::replay::JointReplay| {
+            let sizes = self.replay.rules.sizes(joint.kind);
+            let least = (BANDS * sizes.settle_band).max(SIGMAS * joint.noise.sigma);
+            let starts = self.replay.transitions.iter().filter(|start| {
+                start.joint == joint.name && start.kind == Kind::Start && start.measured_onset_s.is_some()
+            });
+            let each: Vec<(f64, f64)> =
+                starts.filter_map(|start| Some((self.sinks(start)?, start.planned_onset_s))).collect();
+            let (most, at_s) = each.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0))?;
+            let count = each.iter().filter(|(by, _)| *by > least).count();
+            let (name, kind) = (joint.name.clone(), joint.kind);
+            (count > 0).then_some(Backward { joint: name, kind, count: [count, each.len()], most, at_s })
+        };
+        self.replay.joints.iter().filter_map(of).collect()
+    }
+
+    /// How far a joint goes against its plan until it starts, rad or m.
+    fn sinks(&self, start: &Transition) -> Option<f64> {
+        let pair = self.pairs.iter().find(|pair| pair.name == start.joint)?;
+        let at = |s: f64| pair.t_s.partition_point(|t_s| *t_s < s);
+        let (from, to) = (at(start.planned_onset_s), at(start.measured_onset_s?));
+        let q = pair.measured.get(from..to)?;
+        let first = q.first()?;
+        let against = q.iter().map(|q| f64::from(start.direction) * (first - q));
+        Some(against.fold(0.0, f64::max))
+    }
+}
