@@ -22,6 +22,8 @@ const DRIFTS_S: f64 = 0.12;
 const DRIFTING: usize = 2;
 const DRIFTS_ALIKE: f64 = 0.4;
 const EVENLY: std::ops::RangeInclusive<f64> = 0.25..=0.75;
+/// Share of time by which clocks run apart at most, where it changes so.
+const SLIGHTLY: f64 = 0.02;
 /// The plan is as fast in each part, within this factor.
 const AS_FAST: f64 = 1.4;
 
@@ -54,9 +56,11 @@ pub(super) fn message(planned: &Series, measured: &Series, one_clock: bool) -> O
         ));
     }
     let (left_by_lag, delay_s) = lagged(&joints, late_s);
-    if let Some(behind) =
-        Behind::of(planned, measured).filter(|_| another_pace(&joints, as_it_is, left_by_lag).is_none())
-    {
+    // Steadily, and by so little, clocks run apart.
+    let steady =
+        || drift(&joints).is_some_and(|[from_s, to_s, over_s]| (to_s - from_s).abs() < SLIGHTLY * over_s);
+    let other = || another_pace(&joints, as_it_is, left_by_lag).is_some() || steady();
+    if let Some(behind) = Behind::of(planned, measured).filter(|_| !other()) {
         return Some(behind.message());
     }
     if !one_clock && late_s > USUAL_S[1] && left < LEFT[1] && delay_s > USUAL_S[1] {

@@ -40,7 +40,14 @@ fn a_run_that_is_slowed_on_the_way_falls_behind() {
         let found = said(slowed(from, to, pace));
         assert!(found.as_ref().is_some_and(|one| one.contains(told)), "{pace}: {found:?}");
     }
-    // Held on the way, and by a lag alone.
+    // By a clock, steadily; held on the way, and by a lag alone.
+    let long = |scale: f64| {
+        let of = |joint: f64, t: f64| joint * (0.05 * t).sin() * (1.0 + 0.3 * (0.013 * t).cos());
+        let track = |name: &str, size: f64| Track::sampled(name, 40_000, |t| of(size, scale * t));
+        Series { tracks: vec![track("swing", 1.0), track("boom", -0.5)] }
+    };
+    let told = message(&long(1.0), &long(0.995), false);
+    assert!(told.as_ref().is_none_or(|one| !one.contains("fall behind")), "{told:?}");
     assert!(said(|t| t.min(7.0).max(t - 3.0)).is_some_and(|one| one.contains("fall behind")));
     assert_eq!(said(|t| t - 0.6), None);
 }
