@@ -108,7 +108,9 @@ fn pairs(values: &[(usize, Vec<f64>)]) -> Vec<[usize; 2]> {
         off(&a[1..], b) > off(a, &b[1..])
     };
     if 2 * found.iter().filter(leads).count() < found.len() {
-        found.iter_mut().for_each(|pair| pair.reverse());
+        for pair in &mut found {
+            pair.reverse();
+        }
     }
     found
 }

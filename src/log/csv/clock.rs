@@ -34,7 +34,8 @@ pub(super) fn choose(
     let look = Look { head, labels, dialect, options };
     if let Some(hz) = options.rate_hz {
         let times = |column: &usize| {
-            labels[*column].is_time && look.column(*column).is_ok_and(|found| found.steady && found.resolves)
+            labels[*column].is_time
+                && look.column(*column).is_ok_and(|found| found.steady() && found.resolves)
         };
         if let Some(column) = (0..labels.len()).find(times) {
             let message = format!(
@@ -54,8 +55,8 @@ pub(super) fn choose(
     for column in (0..labels.len()).filter(|&column| labels[column].is_time) {
         let is_span = look.is_span(column);
         match look.column(column) {
-            Ok(found) if is_span && !(found.steady && found.resolves) => {}
-            Ok(found) => if found.steady { &mut usable } else { &mut unsteady }.push(found),
+            Ok(found) if is_span && !(found.steady() && found.resolves) => {}
+            Ok(found) => if found.steady() { &mut usable } else { &mut unsteady }.push(found),
             Err(error) => failure = failure.or(Some(error).filter(|_| !is_span)),
         }
     }
@@ -69,8 +70,8 @@ pub(super) fn choose(
         usable = unsteady;
     }
     // Beside a clock that rises, one that falls says what is left.
-    if !usable.iter().all(|found| found.falls) {
-        usable.retain(|found| !found.falls);
+    if !usable.iter().all(Found::falls) {
+        usable.retain(|found| !found.falls());
     }
     look.join_day_and_time(&mut usable);
     look.join_parts(&mut usable);
@@ -107,21 +108,36 @@ pub(super) fn of_column(
     Look { head, labels, dialect, options }.column(column).ok()
 }
 
+/// How a column goes from row to row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Course {
+    Rises,
+    /// As what is left of a time does, and tables whose newest row stands first.
+    Falls,
+    /// No more often one than the other: what only measures something does.
+    Neither,
+}
+
 /// A column of times.
 pub(super) struct Found {
     pub(super) source: TimeSource,
     /// Whether most rows have a stamp of their own.
     pub(super) resolves: bool,
-    /// Whether it rises from row to row, or falls, more often than what only measures something does.
-    pub(super) steady: bool,
-    /// Whether it falls, as what is left of a time does, and tables whose newest row stands first.
-    pub(super) falls: bool,
+    pub(super) course: Course,
     pub(super) absolute: bool,
     /// The guesses.
     pub(super) doubt: Option<String>,
 }
 
 impl Found {
+    pub(super) fn steady(&self) -> bool {
+        self.course != Course::Neither
+    }
+
+    pub(super) fn falls(&self) -> bool {
+        self.course == Course::Falls
+    }
+
     fn tell(self, head: &Head, remarks: &mut Remarks) -> TimeSource {
         let column = self.source.columns().first().map_or("", |&column| head.names[column].as_str());
         if let Some(doubt) = self.doubt {
@@ -157,8 +173,11 @@ impl Look<'_> {
         let is_span = source.columns().iter().any(|column| self.is_span(*column));
         Found {
             resolves: !ns.is_empty() && 2 * (rises + falls) + 1 >= ns.len(),
-            steady: ns.len() < LEAST_ROWS && !is_span || 4 * rises.min(falls) <= rises + falls,
-            falls: falls > rises,
+            course: match ns.len() < LEAST_ROWS && !is_span || 4 * rises.min(falls) <= rises + falls {
+                false => Course::Neither,
+                true if falls > rises => Course::Falls,
+                true => Course::Rises,
+            },
             absolute: ns.first().is_some_and(|first| *first >= FIRST_ABSOLUTE_NS),
             source,
             doubt,

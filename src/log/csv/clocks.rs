@@ -163,10 +163,10 @@ fn groups(head: &Head, dialect: Dialect, options: &CsvOptions) -> Option<(Vec<us
     let labels = head.labels();
     let of = |time: &usize| clock::of_column(head, &labels, dialect, options, *time);
     // What goes up and down is no clock.
-    let is_clock = |column: &usize| labels[*column].is_time && of(column).is_none_or(|found| found.steady);
+    let is_clock = |column: &usize| labels[*column].is_time && of(column).is_none_or(|found| found.steady());
     let mut times: Vec<usize> = (0..labels.len()).filter(is_clock).collect();
     // Beside a clock that rises, one that falls says what is left.
-    let falls = |column: &usize| of(column).is_some_and(|found| found.falls);
+    let falls = |column: &usize| of(column).is_some_and(|found| found.falls());
     if !times.iter().all(falls) {
         times.retain(|column| !falls(column));
     }

@@ -20,7 +20,7 @@ impl Look<'_> {
             !self.labels[*column].is_time && forms.first().is_some_and(|form| form.part != Part::Elapsed)
         };
         let columns = (0..self.labels.len()).filter(is);
-        columns.filter_map(|column| self.column(column).ok()).filter(|found| found.steady).collect()
+        columns.filter_map(|column| self.column(column).ok()).filter(Found::steady).collect()
     }
 
     /// A day in one column and a time of day in another are one time. Beside `AM` and `PM` the month comes first.
