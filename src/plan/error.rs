@@ -4,6 +4,11 @@ use thiserror::Error;
 
 use crate::{arm::ArmError, moea::MoeaError, series::JointKind, spline::SplineError};
 
+/// A distance, with digits where it is small.
+fn by(kind: JointKind, distance: f64) -> String {
+    if distance < 1e-3 { format!("{distance:.3e} {}", kind.unit()) } else { kind.says(distance) }
+}
+
 /// Why a task does not fit its arm, or cannot be searched.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -35,7 +40,7 @@ pub enum PlanError {
     #[error(
         "key point {point} has {joint} at {}, its range is {} to {}: {} beyond it; move the key point or widen the range",
         kind.says(*found_rad), kind.says(*lowest_rad), kind.says(*highest_rad),
-        kind.says((lowest_rad - found_rad).max(found_rad - highest_rad))
+        by(*kind, (lowest_rad - found_rad).max(found_rad - highest_rad))
     )]
     PointOutside {
         /// Number of the key point, from 1.
