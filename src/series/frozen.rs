@@ -9,7 +9,21 @@ use crate::units::DEGREE_RAD;
 const FROZEN_PLAN_RAD: f64 = 3.0 * DEGREE_RAD;
 /// The same for a joint that slides.
 const FROZEN_PLAN_M: f64 = 0.02;
-const FROZEN_S: f64 = 0.5;
+
+/// Which stretches of one value count.
+#[derive(Debug, Clone, Copy)]
+struct Least {
+    /// They last longer, s.
+    lasts_s: f64,
+    /// The plan moves that long before their end, s: one that leaves its rest within the last moments meets dead time.
+    meets_s: f64,
+    /// And by this share of what is beyond any dead band.
+    share: f64,
+}
+
+const LONG: Least = Least { lasts_s: 0.5, meets_s: 0.5, share: 1.0 };
+/// Where noise is seen at rest.
+const BRIEF: Least = Least { lasts_s: 0.15, meets_s: 0.0, share: 0.1 };
 
 /// Where nobody can have a joint that stood for a sensor that does: it has noise elsewhere, fewer of whose samples than this share
 /// repeat the one before, and repeats at least so many here,
@@ -19,14 +33,12 @@ const MANY: usize = 20;
 const JUMPS: f64 = 0.5;
 const FARTHER: f64 = 3.0;
 
-/// Briefer and nearer stretches count where noise is seen at rest, by steps that turn back as often as this share.
-const BRIEF_S: f64 = 0.15;
-const BRIEFLY: f64 = 0.1;
+/// Noise is seen by steps that turn back as often as this share.
 const TURNS_BACK: f64 = 0.3;
 
 /// The longest stretch of exactly one measured value that lasts while the plan moves on: from, to, samples.
 pub fn frozen(planned: &Track, measured: &Track) -> Option<(f64, f64, u64)> {
-    let longest = stretches(planned, measured, FROZEN_S, 1.0)
+    let longest = stretches(planned, measured, LONG)
         .into_iter()
         .reduce(|a, b| if b.len() > a.len() { b } else { a })?;
     let t_s = measured.t_s();
@@ -37,15 +49,18 @@ pub fn frozen(planned: &Track, measured: &Track) -> Option<(f64, f64, u64)> {
 /// the run is such a stretch.
 pub fn seen(planned: &Track, measured: &Track) -> Option<Track> {
     let q = measured.position();
-    let mut found = stretches(planned, measured, BRIEF_S, BRIEFLY);
+    let mut found = stretches(planned, measured, BRIEF);
     if !found.is_empty() && !shows_noise_at_rest(planned, measured) {
-        found = stretches(planned, measured, FROZEN_S, 1.0);
+        found = stretches(planned, measured, LONG);
     }
     if found.is_empty() {
         return None;
     }
-    let inside = |k: usize| found.iter().any(|stretch| stretch.contains(&k));
-    let elsewhere = || (1..q.len()).filter(|k| !inside(*k) && !inside(*k - 1));
+    let mut inside = vec![false; q.len()];
+    for stretch in &found {
+        inside[stretch.clone()].fill(true);
+    }
+    let elsewhere = || (1..q.len()).filter(|k| !inside[*k] && !inside[*k - 1]);
     let same = |k: &usize| q[*k].to_bits() == q[*k - 1].to_bits();
     let is_noisy = (elsewhere().filter(same).count() as f64) < REPEATS * elsewhere().count() as f64;
     let farthest = elsewhere().map(|k| (q[k] - q[k - 1]).abs()).fold(0.0, f64::max);
@@ -53,7 +68,7 @@ pub fn seen(planned: &Track, measured: &Track) -> Option<Track> {
         let jump = q.get(stretch.end).map_or(0.0, |after| (after - q[stretch.start]).abs());
         let [from_s, to_s] = [stretch.start, stretch.end - 1].map(|k| measured.t_s()[k]);
         let jumps = jump > JUMPS * moved(planned, from_s, to_s) && jump > FARTHER * farthest;
-        is_noisy && stretch.len() >= MANY || jumps && to_s - from_s > FROZEN_S
+        is_noisy && stretch.len() >= MANY || jumps && to_s - from_s > LONG.lasts_s
     };
     let still: Vec<&Range<usize>> = found.iter().filter(surely).collect();
     let stood: usize = still.iter().map(|stretch| stretch.len()).sum();
@@ -61,8 +76,11 @@ pub fn seen(planned: &Track, measured: &Track) -> Option<Track> {
         return None;
     }
     // The first sample of a stretch was measured.
-    let keeps = |k: usize| !still.iter().any(|stretch| stretch.contains(&k) && k != stretch.start);
-    measured.keeping(keeps)
+    let mut keeps = vec![true; q.len()];
+    for stretch in still {
+        keeps[stretch.start + 1..stretch.end].fill(false);
+    }
+    measured.keeping(|k| keeps[k])
 }
 
 /// Whether steps of a sensor turn back while its plan rests, and seldom repeat: noise does, and no joint on its way.
@@ -83,22 +101,19 @@ fn shows_noise_at_rest(planned: &Track, measured: &Track) -> bool {
     all >= MANY as f64 && turns_back > TURNS_BACK * all && repeats < REPEATS * all
 }
 
-/// Stretches of exactly one measured value that last so long while the plan moves on, by this share of what is beyond any dead band,
-/// by their samples.
-fn stretches(planned: &Track, measured: &Track, least_s: f64, share: f64) -> Vec<Range<usize>> {
+/// Stretches of exactly one measured value that last while the plan moves on, by their samples.
+fn stretches(planned: &Track, measured: &Track, least: Least) -> Vec<Range<usize>> {
     let (t_s, q) = (measured.t_s(), measured.position());
     let mut found = Vec::new();
     let mut start = 0;
     // A stretch that lasts so long and begins no later than the first sample that is so late holds that sample.
-    while let Some(after) = past(&t_s[start..], least_s) {
+    while let Some(after) = past(&t_s[start..], least.lasts_s) {
         let inside = start + after;
         let same = |i: &usize| q[*i].to_bits() == q[inside].to_bits();
         let first = (start..inside).rev().take_while(same).last().unwrap_or(inside);
         let end = (inside..q.len()).find(|i| !same(i)).unwrap_or(q.len());
-        let long = t_s[end - 1] - t_s[first] > least_s;
-        // A plan that leaves its rest within the last moments meets dead time.
-        let meets_s = if share < 1.0 { 0.0 } else { least_s };
-        if long && plan_moves(planned, t_s[first], t_s[end - 1] - meets_s, share) {
+        let long = t_s[end - 1] - t_s[first] > least.lasts_s;
+        if long && plan_moves(planned, t_s[first], t_s[end - 1] - least.meets_s, least.share) {
             found.push(first..end);
         }
         start = end;
@@ -194,7 +209,7 @@ mod tests {
             });
             let moved = |from_s: f64, to_s: f64| t_s.iter().filter(|t| (from_s..to_s).contains(*t)).count() > 1;
             let long =
-                stretches.filter(|(from_s, to_s, _)| to_s - from_s > FROZEN_S && moved(*from_s, to_s - FROZEN_S));
+                stretches.filter(|(from_s, to_s, _)| to_s - from_s > LONG.lasts_s && moved(*from_s, to_s - LONG.lasts_s));
             // The first of those that are equally long.
             let expected = long.reduce(|a, b| if b.2 > a.2 { b } else { a });
             let plan = t_s.iter().enumerate().map(|(k, _)| if k % 2 == 0 { 0.0 } else { 1.0 }).collect();

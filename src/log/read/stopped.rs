@@ -95,9 +95,8 @@ pub(super) fn stops(planned: &Series, measured: &Series) -> Vec<Stop> {
 /// When the first joint leaves where it stood, s.
 fn leaves_s(joints: &[(&Track, &Track)], stood_s: f64) -> f64 {
     let until = |(_, came): &(&Track, &Track)| {
-        let (place, near) = (came.held_at(stood_s).position, least(came.kind(), STANDS));
-        let after = came.t_s().iter().zip(came.position()).skip_while(|(t_s, _)| **t_s < stood_s);
-        after.take_while(|(_, q)| (*q - place).abs() <= near).last().map(|(t_s, _)| *t_s)
+        let after = samples(came).skip_while(|(t_s, _)| *t_s < stood_s);
+        after.take_while(stays(came, stood_s)).last().map(|(t_s, _)| t_s)
     };
     joints.iter().filter_map(until).fold(f64::INFINITY, f64::min).max(stood_s)
 }
@@ -105,11 +104,21 @@ fn leaves_s(joints: &[(&Track, &Track)], stood_s: f64) -> f64 {
 /// When the last joint came to where it then stands, s.
 fn comes_to_rest_s(joints: &[(&Track, &Track)], stands_s: f64) -> f64 {
     let since = |(_, came): &(&Track, &Track)| {
-        let (place, near) = (came.held_at(stands_s).position, least(came.kind(), STANDS));
-        let before = came.t_s().iter().zip(came.position()).rev().skip_while(|(t_s, _)| **t_s > stands_s);
-        before.take_while(|(_, q)| (*q - place).abs() <= near).last().map(|(t_s, _)| *t_s)
+        let before = samples(came).rev().skip_while(|(t_s, _)| *t_s > stands_s);
+        before.take_while(stays(came, stands_s)).last().map(|(t_s, _)| t_s)
     };
     joints.iter().filter_map(since).fold(f64::NEG_INFINITY, f64::max).min(stands_s)
+}
+
+/// Instants, s, and positions.
+fn samples(track: &Track) -> impl DoubleEndedIterator<Item = (f64, f64)> + '_ {
+    track.t_s().iter().copied().zip(track.position().iter().copied())
+}
+
+/// Whether a sample is where a joint stands at an instant.
+fn stays(track: &Track, at_s: f64) -> impl Fn(&(f64, f64)) -> bool {
+    let (place, near) = (track.held_at(at_s).position, least(track.kind(), STANDS));
+    move |(_, q)| (q - place).abs() <= near
 }
 
 fn least(kind: JointKind, of: [f64; 2]) -> f64 {

@@ -188,10 +188,6 @@ fn sought(
             found = begun(begin, Some(first)).or(found);
         }
     }
-    // The fastest may keep ceilings that nothing else is found within.
-    if none(&found) && bounded && aim.pace != Pace::Fastest && !timing.objectives.within(ceilings) {
-        found = sought(setup, timing, Aim::fastest(), ceilings, pieces).or(found);
-    }
     found
 }
 

@@ -80,13 +80,17 @@ pub(super) fn chosen(
         Err(NoChoice::Empty) => return Err(PlanError::Times { found: 0, expected: 1 }.into()),
     };
     let times_s = setup.times_s(&nearest.interval_s);
-    if shaping != Shaping::Timing
-        && let Ok(free) = choose(setup, front, &Ceilings::NONE, rule)
-    {
-        let choice = free.above(nearest, &task.ceilings);
-        let made = Made::of(setup, task, &choice, shaping)?;
-        if made.shaped.is_some() {
-            return Ok((choice, made));
+    // The fastest may keep ceilings that nothing else is found within.
+    let fastest = (Rule::Best(Objective::Duration), None);
+    for rule in [rule, fastest] {
+        if shaping != Shaping::Timing
+            && let Ok(free) = choose(setup, front, &Ceilings::NONE, rule)
+        {
+            let choice = free.above(nearest.clone(), &task.ceilings);
+            let made = Made::of(setup, task, &choice, shaping)?;
+            if made.shaped.is_some() {
+                return Ok((choice, made));
+            }
         }
     }
     Err(PlanFailure::Ceilings { nearest: Box::new(PlanEvaluation::of(setup, &times_s)?) })

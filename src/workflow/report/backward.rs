@@ -2,7 +2,7 @@
 
 use super::outcome::Report;
 use crate::{
-    replay::{Kind, Transition},
+    replay::{JointReplay, Kind, Transition},
     series::JointKind,
 };
 
@@ -28,7 +28,7 @@ pub struct Backward {
 impl Report {
     /// The joints that do so.
     pub fn backward(&self) -> Vec<Backward> {
-        let of = |joint: &crate::replay::JointReplay| {
+        let of = |joint: &JointReplay| {
             let sizes = self.replay.rules.sizes(joint.kind);
             let least = (BANDS * sizes.settle_band).max(SIGMAS * joint.noise.sigma);
             let starts = self.replay.transitions.iter().filter(|start| {

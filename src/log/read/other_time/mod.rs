@@ -59,8 +59,11 @@ pub(super) fn message(planned: &Series, measured: &Series, one_clock: bool) -> O
     // Steadily, and by so little, clocks run apart.
     let steady =
         || drift(&joints).is_some_and(|[from_s, to_s, over_s]| (to_s - from_s).abs() < SLIGHTLY * over_s);
-    let other = || another_pace(&joints, as_it_is, left_by_lag).is_some() || steady();
-    if let Some(behind) = Behind::of(planned, measured).filter(|_| !other()) {
+    let pace = another_pace(&joints, as_it_is, left_by_lag);
+    if pace.is_none()
+        && !steady()
+        && let Some(behind) = Behind::of(planned, measured)
+    {
         return Some(behind.message());
     }
     if !one_clock && late_s > USUAL_S[1] && left < LEFT[1] && delay_s > USUAL_S[1] {
@@ -71,8 +74,7 @@ pub(super) fn message(planned: &Series, measured: &Series, one_clock: bool) -> O
             1e3 * late_s
         ));
     }
-    another_pace(&joints, as_it_is, left_by_lag)
-        .or_else(|| if one_clock { None } else { clocks_apart(&joints) })
+    pace.or_else(|| if one_clock { None } else { clocks_apart(&joints) })
 }
 
 /// Says that joints come later and later, or earlier and earlier.
