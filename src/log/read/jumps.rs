@@ -12,10 +12,11 @@ const STEP_SPEED: f64 = 20.0;
 const STEP_ALONE: f64 = 10.0;
 
 /// A measured step that no joint makes is so many times the usual one, which nineteen of twenty stay below, and that of its plan,
-/// and no less than this, rad and m; so many steps tell.
+/// and no less than this, rad and m, nor than joints go between two samples at this speed, rad/s and m/s; so many steps tell.
 const BY_USUAL: f64 = 5.0;
 const USUAL: f64 = 0.95;
 const LEAST: [f64; 2] = [0.01, 0.005];
+const LEAST_SPEED: [f64; 2] = [0.5, 0.25];
 const TELL: usize = 20;
 
 /// So many are none of a sensor that is held.
@@ -27,8 +28,7 @@ const BACK: f64 = 0.1;
 
 /// Remarks on a plan that jumps.
 pub(super) fn of_plan(track: &Track, remarks: &mut Remarks) {
-    let far = |step: f64, lasts_s: f64| step > LEAST_STEP.max(STEP_SPEED * lasts_s);
-    let Some(Jumps { count, most, at_s }) = Jumps::of(track, LEAST_STEP, far) else { return };
+    let Some(Jumps { count, most, at_s }) = Jumps::of(track, LEAST_STEP, is_far) else { return };
     let message = format!(
         "steps of the plan of {} within one sample, the largest of {} at {at_s:.2} s: the plan itself jumps, which no joint can follow \
          at once, so its error begins with the step",
@@ -40,14 +40,13 @@ pub(super) fn of_plan(track: &Track, remarks: &mut Remarks) {
 
 /// Remarks on a measurement that jumps and stays there, while there is a plan.
 pub(super) fn of_measurement(planned: &Track, track: &Track, remarks: &mut Remarks) {
-    let Some(least) = least_step(planned, track) else { return };
-    let far = |step: f64, lasts_s: f64| step > LEAST_STEP.max(STEP_SPEED * lasts_s);
+    let has_plan = |to_s: f64| planned.at(to_s).is_some();
+    let own = least_step(planned, track);
+    let own = own.and_then(|least| Jumps::of(track, least, |_, [_, to_s]| has_plan(to_s)));
     // A sensor that is held makes many.
-    let few = Jumps::of(track, least, |_, _| true).filter(|jumps| jumps.count <= FEW_STEPS);
-    let found = few.or_else(|| Jumps::of(track, LEAST_STEP, far));
-    let Some(Jumps { count, most, at_s }) = found.filter(|jumps| planned.at(jumps.at_s).is_some()) else {
-        return;
-    };
+    let few = own.filter(|jumps| jumps.count <= FEW_STEPS);
+    let any = || Jumps::of(track, LEAST_STEP, |step, span_s| is_far(step, span_s) && has_plan(span_s[1]));
+    let Some(Jumps { count, most, at_s }) = few.or_else(any) else { return };
     let message = format!(
         "steps of the measured {} within one sample, the largest of {} at {at_s:.2} s: no joint moves so, and errors from there on are \
          the sensor's (a fault value, a lost reference, another zero, a slip, samples that were held)",
@@ -55,6 +54,16 @@ pub(super) fn of_measurement(planned: &Track, track: &Track, remarks: &mut Remar
         track.kind().says(most)
     );
     remarks.add(Code::Implausible, count, message);
+}
+
+/// Whether a step over a span of time, s, is none of any joint.
+fn is_far(step: f64, [from_s, to_s]: [f64; 2]) -> bool {
+    step > LEAST_STEP.max(STEP_SPEED * (to_s - from_s))
+}
+
+/// Whether no step is larger.
+fn is_calm(position: &[f64], step: f64) -> bool {
+    position.windows(2).fold(true, |calm, w| calm & ((w[1] - w[0]).abs() <= step))
 }
 
 /// A measurement without few samples in a row that lie where no joint goes and comes back from; `None` where there are none.
@@ -85,8 +94,9 @@ pub(super) fn without_excursions(planned: &Track, track: &Track) -> Option<Track
 /// What no joint moves within one sample, by its plan and what it usually does; `None` where none of its steps is as large.
 fn least_step(planned: &Track, track: &Track) -> Option<f64> {
     let q = track.position();
-    let least = LEAST[usize::from(track.kind() == JointKind::Slides)];
-    if q.windows(2).fold(true, |calm, w| calm & ((w[1] - w[0]).abs() <= least)) {
+    let slides = usize::from(track.kind() == JointKind::Slides);
+    let least = LEAST[slides].max(LEAST_SPEED[slides] * track.sample_interval_s());
+    if is_calm(q, least) {
         return None;
     }
     let steps: Vec<f64> = q.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|step| *step > 0.0).collect();
@@ -110,19 +120,20 @@ struct Jumps {
 }
 
 impl Jumps {
-    /// Those of more than this, of which this holds by their size and how long they last, s, and that stand alone; `None` of none.
-    fn of(track: &Track, least: f64, far: impl Fn(f64, f64) -> bool) -> Option<Self> {
+    /// Those of more than this, of which this holds by their size and from when to when they last, s, and that stand alone; `None` of
+    /// none.
+    fn of(track: &Track, least: f64, counts: impl Fn(f64, [f64; 2]) -> bool) -> Option<Self> {
         let (t_s, position) = (track.t_s(), track.position());
         let mut found = Self { count: 0, most: 0.0, at_s: 0.0 };
-        if position.windows(2).fold(true, |calm, w| calm & ((w[1] - w[0]).abs() <= least)) {
+        if is_calm(position, least) {
             return None;
         }
         for part in track.segments() {
             let step = |k: usize| (position[k] - position[k - 1]).abs();
             for k in part.start + 1..part.end {
                 let beside = || [k - 1, k + 1].into_iter().filter(|k| (part.start + 1..part.end).contains(k));
-                let far = step(k) > least && far(step(k), t_s[k] - t_s[k - 1]);
-                if far && step(k) > STEP_ALONE * beside().map(step).fold(0.0, f64::max) {
+                let counts = step(k) > least && counts(step(k), [t_s[k - 1], t_s[k]]);
+                if counts && step(k) > STEP_ALONE * beside().map(step).fold(0.0, f64::max) {
                     found.count += 1;
                     if step(k) > found.most {
                         (found.most, found.at_s) = (step(k), t_s[k]);
@@ -168,6 +179,20 @@ mod tests {
             let (remarks, left) = of(course);
             assert!(remarks.as_slice().is_empty() && left.is_none(), "{remarks:?} {left:?}");
         }
+    }
+
+    #[test]
+    fn a_jump_of_a_joint_that_stands_is_told_and_a_jog_by_hand_between_slow_samples_is_kept() {
+        let track = |rate_hz: f64, at: &dyn Fn(f64) -> f64| {
+            let t_s: Vec<f64> = (0..200).map(|k| f64::from(k) / rate_hz).collect();
+            Track::new("a", t_s.clone(), t_s.iter().map(|t_s| at(*t_s)).collect::<Vec<f64>>(), &[]).unwrap()
+        };
+        let mut remarks = Remarks::default();
+        let steps = track(100.0, &|t| if t < 1.0 { 0.0 } else { 0.5 });
+        of_measurement(&track(100.0, &|_| 0.0), &steps, &mut remarks);
+        assert_eq!(remarks.as_slice().len(), 1);
+        let jogs = track(1.0, &|t| noise(t) + if (90.5..93.5).contains(&t) { 0.1 } else { 0.0 });
+        assert_eq!(without_excursions(&track(1.0, &|_| 0.0), &jogs), None);
     }
 
     #[test]
