@@ -199,7 +199,8 @@ impl<'a> Target<'a> {
         match (self.form, self.file) {
             (Form::Markdown, _) => kit::markdown(document),
             (_, Some(_)) => kit::text(document),
-            (_, None) => shown(document),
+            // What is printed is pasted here and now.
+            (_, None) => shown(&document.clone().sparing(&|file| Path::new(file).exists())),
         }
     }
 

@@ -47,8 +47,8 @@ pub use excite::{Excitation, JointRoom, RAMP_S, Ramp, STROKE_POINTS_HZ, excite};
 pub use excited::is_excitation;
 pub use held_out::HeldOut;
 pub use learn::{
-    AFTER_S, Character, JointStep, Learning, Learnt, MORE_ERROR, Oscillation, Room, SHARE, Stalled, Step,
-    Stop, Trial, learn,
+    AFTER_S, Chance, Character, JointStep, Learning, Learnt, MORE_ERROR, Oscillation, Room, SHARE, Stalled,
+    Step, Stop, TRAVELS_RAD, Trial, half_astray, learn,
 };
 pub use model::{Model, STEP_S};
 pub use outcome::{

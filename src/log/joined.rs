@@ -1,14 +1,18 @@
-//! What our joined logs say of their plan: the topic that it was sent on. One writer, one reader.
+//! What our joined logs say of their plan, the topic that it was sent on, and of the units of what was recorded. One writer, one
+//! reader.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::{options::Selector, source::is_field, write::Topics};
+use super::{csv::LengthUnit, options::Selector, source::is_field, write::Topics};
 
 /// Name of the metadata.
 pub(super) const METADATA: &str = "hydrotrace.join";
 
 const TOPIC: &str = "sent_topic";
 const FIELD: &str = "sent_field";
+const WRITTEN: &str = "written_topics";
+const DEGREES: &str = "topics_in_degrees";
+const LENGTHS: &str = "lengths";
 /// Between topics, or fields, of which there are several.
 const AND: &str = ", ";
 
@@ -19,10 +23,44 @@ pub(super) struct Sent<'a> {
     fields: &'a str,
 }
 
-/// The entries for what was sent; topics and fields are joined by a comma.
-pub(super) fn entries(topics: &str, fields: &str) -> BTreeMap<String, String> {
-    let entry = |key: &str, text: &str| (key.to_owned(), text.to_owned());
-    [entry(TOPIC, topics), entry(FIELD, fields)].into()
+/// In what the topics of a joined log are: its messages are those of the recorder, and the plan beside them is in rad and m.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct RecordedIn {
+    /// Topics in degrees.
+    pub degrees: BTreeSet<String>,
+    /// Units of joints that slide, on every topic that was recorded.
+    pub lengths: BTreeMap<String, LengthUnit>,
+}
+
+/// The entries for what was sent, whose topics and fields are joined by a comma, for the topics that were written, and for the units of
+/// the others.
+pub(super) fn entries(
+    sent: Option<[&str; 2]>,
+    written: &[&str],
+    recorded: &RecordedIn,
+) -> BTreeMap<String, String> {
+    let lengths: Vec<String> =
+        recorded.lengths.iter().map(|(joint, unit)| format!("{joint}={}", unit.name())).collect();
+    let degrees: Vec<&str> = recorded.degrees.iter().map(String::as_str).collect();
+    let [topics, fields] = sent.unwrap_or_default();
+    let all = [
+        (TOPIC, topics.to_owned()),
+        (FIELD, fields.to_owned()),
+        (WRITTEN, written.join(AND)),
+        (DEGREES, degrees.join(AND)),
+        (LENGTHS, lengths.join(AND)),
+    ];
+    all.into_iter().filter(|(_, text)| !text.is_empty()).map(|(key, text)| (key.to_owned(), text)).collect()
+}
+
+/// The topics that a join wrote, in rad and m whatever is said of the others, and the units of those.
+pub(super) fn units(metadata: &BTreeMap<String, BTreeMap<String, String>>) -> (BTreeSet<String>, RecordedIn) {
+    let all = |key: &str| {
+        let text = metadata.get(METADATA).and_then(|entries| entries.get(key));
+        text.into_iter().flat_map(|text| text.split(AND)).map(str::to_owned)
+    };
+    let lengths = all(LENGTHS).filter_map(|text| LengthUnit::of_joint(&text)).collect();
+    (all(WRITTEN).collect(), RecordedIn { degrees: all(DEGREES).collect(), lengths })
 }
 
 /// What was sent, if a log was joined and has its plan.

@@ -54,6 +54,7 @@ pub use files::{Passes, passes};
 pub use flat::read_messages;
 pub use foreign::read_csv;
 pub use input::Input;
+pub use joined::RecordedIn;
 pub(crate) use joint_kind::{METADATA as JOINT_KINDS, entries as joint_kinds};
 pub use options::{Cylinders, ReadOptions, Selector, Sides, SignalRole, TimeBase, WantedSignal};
 pub use range::TimeRange;

@@ -175,7 +175,7 @@ impl Answer {
 }
 
 /// Where a plan rests: at its beginning and at its end, however shortly, and in between for long enough to tell.
-fn rests(planned: &[(f64, f64)]) -> Vec<Range<usize>> {
+pub(super) fn rests(planned: &[(f64, f64)]) -> Vec<Range<usize>> {
     let (mut rests, mut from) = (Vec::new(), 0);
     let n = planned.len();
     while from < n {

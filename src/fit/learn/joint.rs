@@ -6,9 +6,10 @@ use super::{
     super::{FitError, JointFit, model::STEP_S},
     JointStep, Learning, Room, SHARE, Step, Trial,
     answer::Answer,
+    astray::is_astray,
+    chance::{Chance, unlearnt},
     correct::{
-        Aim, CALM_MODEL_HZ, Manner, NONE_RAD, Workspace, faded, first, inverted, largest, rms,
-        unexplained_rad,
+        Aim, CALM_MODEL_HZ, Manner, NONE_RAD, Workspace, faded, first, inverted, largest, unexplained_rad,
     },
     oscillation::{Character, Oscillation},
     part::is_part,
@@ -19,7 +20,7 @@ use super::{
     stop::Stop,
 };
 use crate::{
-    math::{deviation, lowpass, smooth_step},
+    math::{lowpass, smooth_step},
     series::{JointKind, Track},
     units::DEGREE_RAD,
 };
@@ -28,7 +29,7 @@ use crate::{
 const FADES_S: f64 = 0.5;
 
 /// Largest correction of a plan that is off by little, rad, and of others by what they are off by.
-const CAP_RAD: f64 = 1.5 * DEGREE_RAD;
+pub(super) const CAP_RAD: f64 = 1.5 * DEGREE_RAD;
 
 const CAP_BY_ERROR: f64 = 1.25;
 
@@ -54,18 +55,11 @@ const GAINS: [f64; 3] = [0.7, 0.6, 0.9];
 /// Between slow and fast, Hz.
 const FAST_HZ: f64 = 1.5;
 
-/// A joint whose error is more than this share of its motion does not follow its plan: what it does is no error to be
-/// corrected. Smaller errors than that of the lesser cap are.
-const FOLLOWS: f64 = 0.5;
-
 /// Corrections that differ by less than this share are the same.
 const AGAIN: f64 = 0.05;
 
 /// Errors that differ from run to run by this share of them tell nothing of what a correction gained.
 const DIFFERS: f64 = 0.3;
-
-/// Share of the error of a slow joint that its model may leave.
-const EXPLAINED: f64 = 0.2;
 
 /// One joint with its runs.
 pub(super) struct Joint<'a> {
@@ -77,6 +71,7 @@ pub(super) struct Joint<'a> {
     /// What was added to the plan in each run, rad.
     sent: Vec<Vec<f64>>,
     stop: Option<Stop>,
+    chance: Option<Chance>,
     /// Whether the newest run has little to do with the plan.
     astray: bool,
     pub(super) oscillation: Option<Oscillation>,
@@ -99,6 +94,8 @@ impl<'a> Joint<'a> {
         let sent = answers.iter().map(|run| run.correction_rad(&planned)).collect();
         let mut workspace = Workspace::default();
         let astray = answers.last().is_some_and(|run| is_astray(&planned, run, fit, &mut workspace));
+        let known = fit.filter(|_| !astray);
+        let chance = known.and_then(|fit| unlearnt(&mut answers, &planned, &fit.model, &mut workspace));
         // What a joint does that follows another plan, or none, is no oscillation of its loop.
         let newest = fit.zip(answers.last()).filter(|_| !astray);
         let oscillation =
@@ -111,6 +108,7 @@ impl<'a> Joint<'a> {
             answers,
             sent,
             stop,
+            chance,
             astray,
             oscillation,
             workspace,
@@ -154,6 +152,7 @@ impl<'a> Joint<'a> {
             shifted_rad: self.answers.last().map_or(0.0, |run| run.shifted_rad),
             stalled: stalled(&self.sent, &errors, free),
             stop: self.stop,
+            chance: self.chance,
             correction: nothing,
         };
         let Some(fit) = self.fit.filter(|_| !untouched && !free.is_empty() && settings.gain > 0.0) else {
@@ -309,28 +308,6 @@ impl<'a> Joint<'a> {
 /// Frequency of what is left of a finished correction by half, Hz.
 fn finished_hz(manner: &Manner) -> f64 {
     FINISHED_HZ.max(FINISHED_BY_CUT_OFF * manner.cut_off_hz)
-}
-
-/// Whether a run has little to do with the plan: wrong sign, zero, unit or name, or a joint that is stuck. One that moves,
-/// and is as far off as its model says, is no such joint but a slow one.
-fn is_astray(
-    planned: &[(f64, f64)],
-    run: &Answer,
-    fit: Option<&JointFit>,
-    workspace: &mut Workspace,
-) -> bool {
-    // A zero that is shifted by more than the motion is no detail of it.
-    let missed_rad = |by: &mut dyn Iterator<Item = f64>| {
-        rms(&by.zip(&run.measured_rad).map(|(angle, measured)| angle - measured).collect::<Vec<f64>>())
-    };
-    let error_rad = missed_rad(&mut planned.iter().map(|planned| planned.0));
-    let asked_rad = deviation(&planned.iter().map(|planned| planned.0).collect::<Vec<f64>>());
-    let slow = |fit: &JointFit| {
-        let left_rad = missed_rad(&mut workspace.response(&fit.model, &run.sent).iter().copied());
-        let moves = deviation(&run.measured_rad) > FOLLOWS * asked_rad;
-        fit.trusted() && moves && left_rad < EXPLAINED * error_rad
-    };
-    error_rad > CAP_RAD.max(FOLLOWS * asked_rad) && !fit.is_some_and(slow)
 }
 
 fn grown(now_rad: f64, best_rad: f64) -> bool {

@@ -2,6 +2,8 @@
 //! the measured error, run after run (iterative learning control, Arimoto et al. 1984, doi:10.1002/rob.4620010203).
 
 mod answer;
+mod astray;
+mod chance;
 mod correct;
 mod joint;
 mod oscillation;
@@ -15,6 +17,8 @@ mod stop;
 use std::ops::Range;
 
 pub use answer::AFTER_S;
+pub use astray::{TRAVELS_RAD, half_astray};
+pub use chance::Chance;
 pub use oscillation::{Character, Oscillation};
 pub use shape::{Room, SHARE};
 pub use spoilt::MORE_ERROR;
@@ -140,6 +144,8 @@ pub struct JointStep {
     pub stalled: Vec<Stalled>,
     /// Where something holds it, whatever is sent.
     pub stop: Option<Stop>,
+    /// What came by chance in the newest run, and is not learnt.
+    pub chance: Option<Chance>,
     /// Correction, rad, its speed, rad/s, and acceleration, rad/s², every [`STEP_S`] from the plan's first sample.
     pub correction: Vec<[f64; 3]>,
 }

@@ -57,6 +57,7 @@ mod printed;
 mod read;
 mod repeats;
 mod restarts;
+mod row_order;
 mod rows;
 mod run;
 mod scale;

@@ -11,6 +11,7 @@ use super::{
     dialect::Dialect,
     head::Head,
     number::number,
+    row_order::{self, FEWEST},
     rows::{Rows, cell_text},
     time::TimeSource,
 };
@@ -105,20 +106,8 @@ pub(super) fn read(
         let message = "last row, which breaks off in a number: the file was cut there; left out";
         remarks.add(Code::NotClosed, 1, message);
     }
-    if runs_backwards(&stamp_ns) {
-        stamp_ns.reverse();
-        for column in columns.values_mut() {
-            column.values.reverse();
-        }
-    }
-    if let Some(order) = order(&stamp_ns).filter(|_| !time.is_of_day()) {
-        let message = "rows in no order of their times; put in order";
-        remarks.add(Code::Reordered, stamp_ns.windows(2).filter(|w| w[1] < w[0]).count() as u64, message);
-        stamp_ns = order.iter().map(|row| stamp_ns[*row]).collect();
-        for column in columns.values_mut() {
-            column.values = order.iter().map(|row| column.values[*row]).collect();
-        }
-    }
+    let of_day = time.is_of_day();
+    row_order::put(&mut stamp_ns, &mut columns, of_day, remarks);
     let absolute = time.settle(&mut stamp_ns);
     let outside = drop_outside(&mut stamp_ns, &mut columns);
     let clock = time.columns().first().map_or("", |&column| head.names[column].as_str());
@@ -129,28 +118,6 @@ pub(super) fn read(
     }
     Ok(Cells { stamp_ns, received_ns, absolute, columns })
 }
-
-/// Whether the newest row comes first, as databases are asked for them: nearly every row is earlier than the one before.
-fn runs_backwards(stamp_ns: &[i64]) -> bool {
-    let falls = stamp_ns.windows(2).filter(|w| w[1] < w[0]).count();
-    let rises = stamp_ns.windows(2).filter(|w| w[1] > w[0]).count();
-    falls >= FEWEST && rises <= falls / 100
-}
-
-/// The order of rows by time where many are earlier than the one before and each has a time of its own, as what a database gives
-/// that was asked for no order; `None` where few are, which came late, or are of another run.
-fn order(stamp_ns: &[i64]) -> Option<Vec<usize>> {
-    let falls = stamp_ns.windows(2).filter(|w| w[1] < w[0]).count();
-    if falls < FEWEST || MANY * falls < stamp_ns.len() {
-        return None;
-    }
-    let mut order: Vec<usize> = (0..stamp_ns.len()).collect();
-    order.sort_by_key(|row| stamp_ns[*row]);
-    order.windows(2).all(|w| stamp_ns[w[0]] < stamp_ns[w[1]]).then_some(order)
-}
-
-/// One row in so many is many.
-const MANY: usize = 5;
 
 /// An error if most rows have no time, a remark if some rows have no time.
 fn judge_stamps(
@@ -333,9 +300,6 @@ fn drop_outside(stamp_ns: &mut Vec<i64>, columns: &mut BTreeMap<usize, Column>) 
 pub(super) const REPEATED: &str =
     "rows with the time of the row before; kept as they are, a report uses the first of each";
 pub(super) const LATE: &str = "rows earlier than the row before; a report puts those that came late in their place and leaves out the others";
-
-/// Fewer rows than this that step back came late; more are on a clock that was set back.
-const FEWEST: usize = 8;
 
 /// When a recorder beside the controller would have received the rows, ns: never earlier than the row before,
 /// and on at the usual step where the clock was set back. By it a report tells rows that came late from a clock

@@ -292,7 +292,7 @@ impl Assembly {
                 base: self.base,
                 epoch_ns: self.epoch_ns,
                 measured: choice.measured.first().and_then(|c| self.extracted.stamps(c.source)),
-                degrees,
+                degrees: self.kinds.degrees(candidate.source, degrees),
                 topic: self.topic(candidate),
                 shown: is_shown(&self.extracted.topic_of(candidate.source).type_name),
             };

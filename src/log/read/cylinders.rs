@@ -15,6 +15,7 @@ use crate::{
     log::{
         csv::LengthUnit,
         error::LogError,
+        joined,
         joint_kind::{self, doubt_sliding},
         options::ReadOptions,
         source::AXES,
@@ -45,6 +46,11 @@ pub(super) struct Kinds {
     in_metres: BTreeSet<String>,
     /// Joints that the caller says to slide, and the unit.
     slides: BTreeMap<String, LengthUnit>,
+    /// Sources that a join wrote, and those that it says to be in degrees.
+    written: BTreeSet<usize>,
+    in_degrees: BTreeSet<usize>,
+    /// Units of lengths that a join says of all others.
+    recorded: BTreeMap<String, LengthUnit>,
 }
 
 struct Conversion {
@@ -103,7 +109,20 @@ impl Kinds {
         self.in_metres = joint_kind::sliding(&extracted.metadata);
         self.sliding.extend(self.in_metres.iter().cloned());
         self.sliding.extend(options.slides.keys().cloned());
+        let (written, recorded) = joined::units(&extracted.metadata);
+        let of = |topics: &BTreeSet<String>| {
+            let is = |source: &usize| topics.contains(&extracted.topic_of(*source).topic);
+            (0..extracted.sources.len()).filter(is).collect()
+        };
+        (self.written, self.in_degrees) = (of(&written), of(&recorded.degrees));
+        self.sliding.extend(recorded.lengths.keys().cloned());
+        self.recorded = recorded.lengths;
         axes_slide
+    }
+
+    /// Whether positions of a source are in degrees, where the caller says so of its side, or a join said it of its topic.
+    pub(super) fn degrees(&self, source: usize, said: bool) -> bool {
+        self.in_degrees.contains(&source) || said && !self.written.contains(&source)
     }
 
     /// How a joint of a source moves.
@@ -120,9 +139,13 @@ impl Kinds {
 
     /// The unit that the caller says of lengths of a joint of a source, m.
     pub(super) fn unit_m(&self, source: usize, joint: &str) -> Option<f64> {
+        if self.written.contains(&source) {
+            return None;
+        }
         let named = || self.slides.get(self.renamed.get(&(source, joint.to_owned()))?);
         // What our logs say to slide, they have in metres.
         let given = self.slides.get(joint).or_else(named).filter(|_| !self.in_metres.contains(joint));
+        let given = self.recorded.get(joint).or(given);
         // Metres are what is meant where nothing else says a unit, as the name of a field may.
         given.filter(|unit| **unit != LengthUnit::Metres).map(|unit| unit.metres())
     }
@@ -135,7 +158,7 @@ impl Kinds {
         of_field: impl Fn(JointKind) -> f64,
     ) -> (JointKind, f64) {
         let kind = self.of(source, joint);
-        if degrees && kind == JointKind::Turns {
+        if self.degrees(source, degrees) && kind == JointKind::Turns {
             return (kind, DEGREE_RAD);
         }
         let scale = self.unit_m(source, joint).unwrap_or_else(|| of_field(kind));

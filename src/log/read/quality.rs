@@ -229,11 +229,14 @@ fn of_units(
     let (plan_rad, angle_rad) = (span_rad(planned.position()), span_rad(measured.position()));
     let name = planned.name();
     let drop = |option: &str, of: &str| format!("{option} does that to {of} in radians: drop it");
-    // Headers, or an option of the import, state units, and the ranges do not agree.
-    let say = |hint: &str, side: &str| {
+    // Headers, or an option of the import, state units, and the ranges do not agree: what spans more than a joint does was in degrees,
+    // or else what spans less was in radians.
+    let say = |hint: &str, [less, more]: [&str; 2]| {
+        let too_much = plan_rad.max(angle_rad) > TURN_AND_A_HALF_RAD;
+        let (side, factor) = if too_much { (more, "0.01745329") } else { (less, "57.29578") };
         let wrong = format!(
-            "one of the two was read in a wrong unit, by its header or an option: put that right, or import it as degrees with {side} \
-             {name}=57.29578*COLUMN"
+            "one of the two was read in a wrong unit, by its header or an option: put that right, or import it with {side} \
+             {name}={factor}*COLUMN"
         );
         if stated { wrong } else { hint.to_owned() }
     };
@@ -241,14 +244,14 @@ fn of_units(
         let cause = if options.planned_in_degrees {
             drop("--planned-degrees", "a plan")
         } else {
-            say("measured in degrees? then say --measured-degrees", "--planned")
+            say("measured in degrees? then say --measured-degrees", ["--planned", "--measured"])
         };
         format!("{name} spans 57.3 times its plan: {cause}")
     } else if looks_like_degrees(plan_rad / angle_rad) {
         let cause = if options.measured_in_degrees {
             drop("--measured-degrees", "a measurement")
         } else {
-            say("in degrees? then say --planned-degrees", "--measured")
+            say("in degrees? then say --planned-degrees", ["--measured", "--planned"])
         };
         format!("the plan of {name} spans 57.3 times the measurement: {cause}")
     } else if plan_rad.min(angle_rad) > TURN_AND_A_HALF_RAD && !options.continuous.iter().any(|c| c == name) {

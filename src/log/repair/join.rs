@@ -9,7 +9,7 @@ use crate::{
         error::LogError,
         file::{Blocks, MessageRecord, Opcode, records},
         files::{ScannedFile, ScannedLog},
-        joined,
+        joined::{self, RecordedIn},
         read::recording::Attachment,
         write::{LogWriter, Options, Role, Topics, WriteError},
     },
@@ -37,6 +37,8 @@ pub struct Addition<'a> {
     pub log_delay_ns: i64,
     /// Topics and fields of what was sent, joined by a comma, if the log has them.
     pub sent: Option<[&'a str; 2]>,
+    /// Units of what was recorded.
+    pub recorded: RecordedIn,
     /// Whether the log has this plan on our topic, and keeps it.
     pub keeps_plan: bool,
     /// Whether what the log has on our topic is what was sent, and is left out.
@@ -99,9 +101,12 @@ impl<W: Write> Joining<'_, W> {
         for (name, entries) in &addition.metadata {
             self.log.metadata(name, entries)?;
         }
-        if let Some([topics, fields]) = addition.sent {
-            self.log.metadata(joined::METADATA, &joined::entries(topics, fields))?;
-        }
+        let topics = Topics::default();
+        let written = [(self.plans, &topics.planned), (self.commands, &topics.command)];
+        let written: Vec<&str> =
+            written.iter().filter(|(writes, _)| *writes).map(|(_, topic)| topic.as_str()).collect();
+        let entries = joined::entries(addition.sent, &written, &addition.recorded);
+        self.log.metadata(joined::METADATA, &entries)?;
         let start_ns = addition.samples.first().map_or(0, |sample| sample.stamp_ns);
         for file in addition.files {
             self.log.attach(&file.name, &file.media_type, &file.data, start_ns)?;

@@ -19,8 +19,9 @@ pub(crate) fn command(words: &[&str]) -> String {
 pub(crate) const READERS: [&str; 9] =
     ["answer", "compare", "export", "fit", "info", "replan", "report", "view", "watch"];
 
-/// Of these, those on the joints: they hold for the recorder's log, too.
-const OF_JOINTS: [&str; 2] = ["--continuous", "--slides"];
+/// Of these, those on how joints, units, columns and clock are recorded: they hold for the recorder's next log, too.
+const OF_RECORDER: [&str; 6] =
+    ["--continuous", "--slides", "--planned-degrees", "--measured-degrees", "--time", "--map"];
 
 /// Those that leave something out.
 const LEAVE_OUT: [&str; 2] = ["--from ", "--to "];
@@ -28,9 +29,11 @@ const LEAVE_OUT: [&str; 2] = ["--from ", "--to "];
 /// A command with the options on what to read, where its verb takes them.
 pub(crate) fn reading(line: &str, options: &[String]) -> String {
     let verb = line.split(' ').nth(1).unwrap_or_default();
-    let of_joints = |option: &&String| OF_JOINTS.iter().any(|one| option.starts_with(one));
+    let of_recorder = |option: &&String| OF_RECORDER.iter().any(|one| option.starts_with(one));
     let taken: Vec<&str> = match verb {
-        "join" if line.contains(" --plan ") => options.iter().filter(of_joints).map(String::as_str).collect(),
+        "join" if line.contains(" --plan ") => {
+            options.iter().filter(of_recorder).map(String::as_str).collect()
+        }
         // A plan of ours, whose topics are not those of the logs.
         "export" if line.contains("--as cylinders") => {
             options.iter().filter(|option| option.starts_with("--hydraulics")).map(String::as_str).collect()

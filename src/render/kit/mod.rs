@@ -15,6 +15,7 @@ mod number;
 pub(in crate::render) mod page;
 #[cfg(feature = "png")]
 mod raster;
+mod spare;
 mod spark;
 mod table;
 mod terminal;

@@ -56,7 +56,7 @@ pub(super) fn named(report: &Report) -> String {
 /// What shows the run, without the time in which the machine stood.
 pub(super) fn without(fault: &Fault, report: &Report) -> String {
     let logs = named(report);
-    match fault.leaves_s() {
+    match report.leaves_s(fault) {
         Some(Leaves::To(s)) => command(&["report", &logs, "--to", &format!("{s:.1}")]),
         Some(Leaves::From(s)) => command(&["report", &logs, "--from", &format!("{s:.1}")]),
         None => command(&["report", &logs]),

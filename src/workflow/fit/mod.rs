@@ -12,7 +12,7 @@ pub use document::{FitDocument, LimitsFile};
 pub use failure::FitFailure;
 
 use crate::{
-    fit::{Fit, FitError, HeldOut, JointFit, Observation, fit_and_held_out},
+    fit::{Fit, FitError, HeldOut, JointFit, Observation, Trial, fit_and_held_out, half_astray},
     log::{ReadOptions, Recording, SignalRole, SourceInfo},
     math::range,
     remark::{Code, Remarks},
@@ -158,11 +158,20 @@ pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted
     let rules = Rules::default();
     let steps =
         |one: &Recording| one.planned.tracks.iter().any(|track| planned_step(track, &rules).is_some());
-    let why_not = |k: usize| match observed[k] {
+    let astray = |one: &Recording| {
+        let run = observation(one);
+        half_astray(&fit, &one.planned, Trial { sent: run.sent, measured: run.measured })
+    };
+    let why_not = |k: usize| {
+        match observed[k] {
         _ if runs[k].identifies => Some("it is an identification run".to_owned()),
         one if !sound(one) => Some("it does not belong to its plan, as the remarks say".to_owned()),
         one if steps(one) => Some("its plan steps".to_owned()),
+        one if astray(one) => Some(
+            "half of its joints or more do not follow their plan: the error of each is more than half of its motion".to_owned(),
+        ),
         one => carried[k].broken(one).map(|broken| format!("its plan {broken}")),
+    }
     };
     let mut not_again: Vec<Option<String>> = (0..observed.len()).map(why_not).collect();
     let again: Vec<usize> = (0..observed.len()).filter(|k| not_again[*k].is_none()).collect();

@@ -19,7 +19,10 @@ use super::carried::{
 };
 use crate::{
     document::PROGRAM,
-    log::{Addition, LogError, LogFiles, PlanSample, ReadOptions, Sides, SignalRole, TimeBase, Topics},
+    log::{
+        Addition, LogError, LogFiles, PlanSample, ReadOptions, RecordedIn, Recording, Sides, SignalRole,
+        TimeBase, Topics,
+    },
     remark::Code,
     series::{Series, Track},
     text::shell_argument,
@@ -255,6 +258,7 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         sent: sent
             .filter(|_| !keeps_plan && !replaces_plan)
             .map(|_| [run.source.planned_topic.as_str(), run.source.planned_field.as_str()]),
+        recorded: recorded_in(&run, &inputs.read),
         files: carried.files(),
         metadata: carried.metadata(),
     };
@@ -278,6 +282,19 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
         located,
         kinds: plan.planned.tracks.iter().map(Track::kind).collect(),
     })
+}
+
+/// In what the topics of a run are, as the caller says.
+fn recorded_in(run: &Recording, read: &ReadOptions) -> RecordedIn {
+    let command = Topics::default().command;
+    let sides = [
+        (read.planned_in_degrees, &run.source.planned_topic),
+        (read.planned_in_degrees, &command),
+        (read.measured_in_degrees, &run.source.measured_topic),
+    ];
+    let degrees = sides.into_iter().filter(|(degrees, topics)| *degrees && !topics.is_empty());
+    let degrees = degrees.flat_map(|(_, topics)| topics.split(", ")).map(str::to_owned).collect();
+    RecordedIn { degrees, lengths: read.slides.clone() }
 }
 
 /// How long the command rests before and after a plan, as far as is measured, s.

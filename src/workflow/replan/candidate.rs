@@ -5,17 +5,13 @@ use super::{
     history::History, last::Last, promised, subject::Subject, warp::Warp,
 };
 use crate::{
-    fit::{Fit, Learning, Step, Trial},
+    fit::{Fit, Learning, Step, TRAVELS_RAD, Trial},
     math::range,
     plan::{PlanEvaluation, Setup},
     series::Series,
     threads,
-    units::DEGREE_RAD,
     workflow::carried::rest::PLAN_LEAD_S,
 };
-
-/// A plan of a joint that travels less is to hold it, rad.
-pub(super) const MOVES_RAD: f64 = 0.5 * DEGREE_RAD;
 
 /// A new timing must be expected to lower the sum of all peaks by this share; otherwise the proven one stays.
 const WORTH: f64 = 0.02;
@@ -53,7 +49,7 @@ impl Candidate {
         let moves = |joint: &&JointCommand| {
             self.plan.track(&joint.name).is_some_and(|track| {
                 let [lowest, highest] = range(track.position().iter().copied());
-                highest - lowest > MOVES_RAD
+                highest - lowest > TRAVELS_RAD
             })
         };
         let joints = || self.command.iter().flat_map(|command| &command.joints).filter(moves);

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::{ReplanFailure, subject::Subject};
 use crate::{
     fit::{
-        Fit, JointFit, JointStep, Learning, Learnt, Oscillation, Room, SHARE, STEP_S, Step, Stop, Trial,
-        learn, predict,
+        Chance, Fit, JointFit, JointStep, Learning, Learnt, Oscillation, Room, SHARE, STEP_S, Step, Stop,
+        Trial, learn, predict,
     },
     math::{State, range, whole},
     plan::{BETWEEN, Interpolation, Limit, Margin, Setup, SpeedRoom},
@@ -62,6 +62,9 @@ pub struct JointCommand {
     /// beyond it.
     #[serde(default)]
     pub held: Option<Stop>,
+    /// What came in one motion of the newest run alone: not learnt until it comes again; null without.
+    #[serde(default)]
+    pub by_chance: Option<Chance>,
     /// Predicted root mean square error of the plan sent as it is, rad; null if the fit does not know the joint.
     pub plain_rms_rad: Option<f64>,
     /// The same of the command, rad.
@@ -380,6 +383,7 @@ fn joints(
             shifted_rad: made.shifted_rad,
             stalled_rad: most(&mut made.stalled.iter().map(|held| held.more_rad)),
             held: made.stop,
+            by_chance: made.chance,
             plain_rms_rad: rms_rad(track)?,
             compensated_rms_rad: rms_rad(sent)?,
             peak_correction_rad: share * most(&mut made.correction.iter().map(|made| made[0])),

@@ -270,6 +270,18 @@ pub(super) fn replanned(
             );
             remarks.add(Code::BeyondLimit, 1, message);
         }
+        for (joint, chance) in command.joints.iter().filter_map(|joint| Some((joint, joint.by_chance?))) {
+            let message = format!(
+                "{} left in its motion from {:.2} s on what neither its other motions nor another run tell of: {} at most, {} in the others; \
+                 something held it by chance, such as an interlock or a load that stuck, or a sensor failed. It is not learnt until it \
+                 comes again in a next run",
+                joint.name,
+                chance.from_s,
+                joint.kind.says(chance.peak_rad),
+                joint.kind.says(chance.usual_rad)
+            );
+            remarks.add(Code::UnlikePlan, 1, message);
+        }
         for joint in command.joints.iter().filter(|joint| joint.stalled_rad > 0.0) {
             let message = format!(
                 "{} more of a correction gained nothing on {}, or spoilt it: a limit that no file tells may hold it, such as its valve or a \

@@ -2,6 +2,7 @@
 
 use super::outcome::Report;
 use crate::{
+    remark::Code,
     replay::{JointReplay, Kind, Transition},
     series::JointKind,
 };
@@ -26,8 +27,12 @@ pub struct Backward {
 }
 
 impl Report {
-    /// The joints that do so.
+    /// The joints that do so; none of a run that followed its plan at another time, whose joints are in other motions.
     pub fn backward(&self) -> Vec<Backward> {
+        let others = [Code::OtherTime, Code::Stopped, Code::Paused];
+        if self.remarks.as_slice().iter().any(|remark| others.contains(&remark.code)) {
+            return Vec::new();
+        }
         let of = |joint: &JointReplay| {
             let sizes = self.replay.rules.sizes(joint.kind);
             let least = (BANDS * sizes.settle_band).max(SIGMAS * joint.noise.sigma);

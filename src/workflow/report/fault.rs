@@ -1,7 +1,10 @@
 //! What happened to a machine that makes the figures of its starts no matter, and why nothing can be learnt from a run.
 
 use super::outcome::{Fault, Report};
-use crate::replay::{JointReplay, Transition};
+use crate::{
+    replay::{JointReplay, Transition},
+    series::last_rest_ends_s,
+};
 
 /// Errors that are nowhere larger than so many standard deviations of the noise, and than so many root mean square, are noise.
 const HIDES: f64 = 6.0;
@@ -9,6 +12,9 @@ const HARDLY_MORE: f64 = 1.15;
 
 /// A machine that is stopped takes so long at most to come to rest, s.
 const COMES_TO_REST_S: f64 = 0.5;
+
+/// A part of a run ends so long before a planned motion, s.
+const BEFORE_S: f64 = 0.1;
 
 /// What is left of a run, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,15 +40,6 @@ impl Fault {
         })
     }
 
-    /// The part of the run that it leaves as it was, from or to an instant, s, which is all that there is of some.
-    pub fn leaves_s(&self) -> Option<Leaves> {
-        match self {
-            Self::Stopped { from_s: Some(from_s), .. } => Some(Leaves::To(from_s - COMES_TO_REST_S)),
-            Self::Stopped { to_s, .. } => to_s.map(Leaves::From),
-            Self::Dead { .. } => None,
-        }
-    }
-
     /// Whether it explains what a start looks like.
     fn explains(&self, start: &Transition) -> bool {
         match self {
@@ -56,6 +53,21 @@ impl Fault {
 }
 
 impl Report {
+    /// The part of the run that a fault leaves as it was, from or to an instant, s, which is all that there is of some: where the
+    /// plan rests, if it does before.
+    pub fn leaves_s(&self, fault: &Fault) -> Option<Leaves> {
+        match fault {
+            Fault::Stopped { from_s: Some(from_s), .. } => {
+                let plans = self.pairs.iter().map(|pair| (&*pair.t_s, pair.planned.as_slice()));
+                let rests_s = last_rest_ends_s(plans, *from_s).map(|s| s - BEFORE_S);
+                let whole_s = rests_s.filter(|s| s.is_finite());
+                Some(Leaves::To(whole_s.unwrap_or(from_s - COMES_TO_REST_S)))
+            }
+            Fault::Stopped { to_s, .. } => to_s.map(Leaves::From),
+            Fault::Dead { .. } => None,
+        }
+    }
+
     /// Whether a joint does not move although its plan does.
     pub fn stands(&self, joint: &JointReplay) -> bool {
         joint.plan_moves && !joint.moves && joint.starts > 0 && self.travel(joint).rests

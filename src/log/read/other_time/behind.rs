@@ -2,8 +2,8 @@
 
 use super::both::{Both, FAR, LEFT, LESS_THAN_LAG, Steps, apart, lagged, shift_s};
 use crate::{
-    math::{range, whole},
-    series::Series,
+    math::{line, range, whole},
+    series::{Series, last_rest_ends_s},
 };
 
 /// Parts of a run, of each of which the lateness is sought among so many, s apart; one that grows on costs so much each time, beside
@@ -22,12 +22,21 @@ const AFTER: f64 = 0.2;
 /// Errors that are explained by it leave less than this of those that are there.
 const EXPLAINED: f64 = 0.3;
 
+/// A run that falls behind evenly is never farther from that than this share of all that it falls behind, in so many parts.
+const EVEN: f64 = 0.15;
+const LEAST_PARTS: usize = 15;
+
+/// A part of a run ends so long before a planned motion, s.
+const BEFORE_S: f64 = 0.1;
+
 /// How a run fell behind.
 pub(in crate::log::read) struct Behind {
     /// Ends of the parts, s, and how late the run is in each, s; that never falls.
     late_s: Vec<[f64; 2]>,
     /// Whether it moved on as late as it then was.
     stays: bool,
+    /// When the plan first moves, s.
+    begins_s: f64,
 }
 
 impl Behind {
@@ -39,7 +48,15 @@ impl Behind {
             return None;
         }
         let steps: Vec<Steps> = joints.iter().map(|joint| Steps::of(joint.planned)).collect::<Option<_>>()?;
-        let found = Self { late_s: path(&joints, &steps)?, stays: false };
+        let found = Self {
+            late_s: path(&joints, &steps)?,
+            stays: false,
+            begins_s: joints
+                .iter()
+                .filter_map(Both::start_s)
+                .map(|[from_s, _]| from_s)
+                .fold(f64::INFINITY, f64::min),
+        };
         let [first_s, last_s] = [found.late_s.first()?[1], found.late_s.last()?[1]];
         let plan = |joint: usize, t_s: f64| steps[joint].at(t_s - found.late_at(t_s));
         if last_s - first_s < GROWS_S {
@@ -96,7 +113,33 @@ impl Behind {
         each.map(|two| two[1][1] - two[0][1]).sum::<f64>() >= GROWS_S
     }
 
-    pub(in crate::log::read) fn message(&self) -> String {
+    /// How many times as long as its plan a run took that fell behind evenly from its first motion on.
+    fn throughout(&self) -> Option<f64> {
+        let (first_s, stays_from_s) = (self.late_s[0][1], self.stays_from_s());
+        // Before it moves it may be late by anything.
+        let grows = self.late_s.iter().skip_while(|[_, late_s]| *late_s <= first_s);
+        let (t_s, late_s): (Vec<f64>, Vec<f64>) = grows
+            .filter(|[end_s, _]| *end_s <= stays_from_s)
+            .map(|[end_s, late_s]| (*end_s, *late_s))
+            .unzip();
+        let most_s = late_s.last().copied().unwrap_or_default();
+        let even = line(&t_s, &late_s);
+        let far = |late_s: f64| late_s.abs() > EVEN * most_s;
+        let at_first_s = late_s.first()? - even.left.first()? + even.slope * (self.begins_s - t_s.first()?);
+        let evenly = t_s.len() >= LEAST_PARTS
+            && !even.left.iter().any(|left_s| far(*left_s))
+            && !far(at_first_s)
+            && (0.0..1.0).contains(&even.slope);
+        evenly.then(|| 1.0 / (1.0 - even.slope))
+    }
+
+    pub(in crate::log::read) fn message(&self, planned: &Series) -> String {
+        if let Some(times) = self.throughout() {
+            return format!(
+                "the joints take about {times:.2} times as long as their plan, from its beginning on: was the machine run at another speed \
+                 (override)? Errors at the same instant say little then, the distance to the path does"
+            );
+        }
         let first_s = self.late_s[0][1];
         let last_s = self.late_s[self.late_s.len() - 1][1];
         let from_s = self.late_s.iter().take_while(|[_, late_s]| *late_s <= first_s).map(|[end_s, _]| *end_s);
@@ -106,10 +149,14 @@ impl Behind {
         } else {
             format!("until the end, where they are {last_s:.1} s late")
         };
+        let plans = planned.tracks.iter().map(|track| (track.t_s(), track.position()));
+        let rests_s = last_rest_ends_s(plans, from_s).filter(|s| s.is_finite());
+        let alone = rests_s.map_or(String::new(), |rests_s| {
+            format!("; what was in time is read alone with --to {:.1}", rests_s - BEFORE_S)
+        });
         format!(
             "all joints fall behind their plan by {:.1} s from about {from_s:.0} s {until}: the run was slowed or held meanwhile (override, \
-             pause). Errors at the same instant say little from there on, the distance to the path does; what was in time is read alone \
-             with --to {from_s:.0}",
+             pause). Errors at the same instant say little from there on, the distance to the path does{alone}",
             last_s - first_s
         )
     }

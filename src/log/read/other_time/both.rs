@@ -1,7 +1,7 @@
 //! Plan and measurement of joints, side by side, and by how much the one is later than the other.
 
 use crate::{
-    math::{deviation, quantile, whole},
+    math::{deviation, quantile, range, whole},
     series::{Series, Track},
 };
 
@@ -80,6 +80,15 @@ impl<'a> Both<'a> {
             deviation(&came.iter().map(|[t_s, _]| planned.held_at(*t_s).position).collect::<Vec<f64>>());
         let moved = deviation(&came.iter().map(|[_, q]| *q).collect::<Vec<f64>>());
         (motion > TELLS && moved > MOVED * motion).then_some(Self { planned, measured, came, motion })
+    }
+
+    /// From when its plan leaves rest until it has gone a twentieth of its range, s.
+    pub(super) fn start_s(&self) -> Option<[f64; 2]> {
+        const LEFT: f64 = 0.002;
+        let (t_s, q) = (self.planned.t_s(), self.planned.position());
+        let [lowest, highest] = range(q.iter().copied());
+        let gone = |share: f64| q.iter().position(|x| (x - q[0]).abs() > share * (highest - lowest));
+        Some([t_s[gone(LEFT)?], t_s[gone(BEGUN)?]])
     }
 
     pub(super) fn lasts_s(&self) -> Option<f64> {

@@ -5,12 +5,12 @@ mod both;
 mod pace;
 
 pub(super) use behind::Behind;
-use both::{BEGUN, Both, FAR, LEFT, USUAL_S, apart, lagged, shift_s};
+use both::{Both, FAR, LEFT, USUAL_S, apart, lagged, shift_s};
 use pace::another_pace;
 
 use crate::{
     math::{quantile, range},
-    series::{Series, Track},
+    series::Series,
 };
 
 /// What is left of an error that every joint has because it is before its plan.
@@ -64,7 +64,7 @@ pub(super) fn message(planned: &Series, measured: &Series, one_clock: bool) -> O
         && !steady()
         && let Some(behind) = Behind::of(planned, measured)
     {
-        return Some(behind.message());
+        return Some(behind.message(planned));
     }
     if !one_clock && late_s > USUAL_S[1] && left < LEFT[1] && delay_s > USUAL_S[1] {
         return Some(format!(
@@ -120,7 +120,7 @@ fn drift(joints: &[Both]) -> Option<[f64; 3]> {
 /// controller asks for too much speed, and by no clock.
 fn leave_in_time(joints: &[Both], late_s: f64) -> bool {
     let in_time = |joint: &&Both| {
-        let Some([from_s, to_s]) = start_s(joint.planned) else { return false };
+        let Some([from_s, to_s]) = joint.start_s() else { return false };
         let track = joint.measured;
         let within = |t_s: &f64| (from_s + late_s..=to_s).contains(t_s);
         let came = track.t_s().iter().zip(track.position()).filter(|(t_s, _)| within(t_s));
@@ -131,15 +131,6 @@ fn leave_in_time(joints: &[Both], late_s: f64) -> bool {
         as_it_is < shifted
     };
     2 * joints.iter().filter(in_time).count() > joints.len()
-}
-
-/// From when a plan leaves rest until it has gone a twentieth of its range, s.
-fn start_s(planned: &Track) -> Option<[f64; 2]> {
-    const LEFT: f64 = 0.002;
-    let (t_s, q) = (planned.t_s(), planned.position());
-    let [lowest, highest] = range(q.iter().copied());
-    let gone = |share: f64| q.iter().position(|x| (x - q[0]).abs() > share * (highest - lowest));
-    Some([t_s[gone(LEFT)?], t_s[gone(BEGUN)?]])
 }
 
 /// By how much all joints together seem to be late, s; zero of none.

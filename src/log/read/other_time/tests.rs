@@ -1,7 +1,7 @@
 //! Measurements of one plan whose clock, pace and lag are known.
 
 use super::*;
-use crate::math::smooth_step as step;
+use crate::{math::smooth_step as step, series::Track};
 
 fn series(at_s: impl Fn(f64) -> f64) -> Series {
     let plan = |joint: f64, t: f64| joint * (step((t - 4.0) / 8.0) - 0.6 * step((t - 20.0) / 6.0));

@@ -1,11 +1,11 @@
 //! The checks one by one.
 
-use super::super::{candidate::MOVES_RAD, outcome::CAREFUL};
+use super::super::outcome::CAREFUL;
 use super::{
     Check, Fastest, Finding, JointTrust, Level, Outside, Overall, Reason, Replanned, Sharpest, TooFast,
 };
 use crate::{
-    fit::{Character, JointFit, LEAST_SKILL, Step},
+    fit::{Character, JointFit, LEAST_SKILL, Step, TRAVELS_RAD},
     math::range,
     plan::{BETWEEN, Limit, Margin},
     remark::Code,
@@ -235,7 +235,7 @@ fn trust(replanned: &Replanned) -> Check {
         let astray = made.is_some_and(|made| made.step == Step::Astray);
         let [lowest, highest] = range(track.position().iter().copied());
         // A joint that is held, and does not oscillate, need not be known.
-        let held = fit.is_none() && highest - lowest < MOVES_RAD;
+        let held = fit.is_none() && highest - lowest < TRAVELS_RAD;
         let level = match character {
             Some(Character::Hunts) => Level::Stop,
             Some(Character::Rings) => Level::Caution,
