@@ -74,8 +74,11 @@ pub enum LogError {
     PosesApart { apart: String },
     #[error("found no {missing} joint angles; the log has {present}; name them with {fix}")]
     Missing { missing: &'static str, present: String, fix: String },
-    #[error("{error}; not all of the log could be read: {damage}")]
-    Damaged { error: Box<Self>, damage: String },
+    #[error(
+        "not all of the log could be read: {damage}; `hydrotrace recover {} -o saved.mcap` saves what can be. Of what was read: {error}",
+        shell_argument(path)
+    )]
+    Damaged { error: Box<Self>, damage: String, path: PathBuf },
     #[error(
         "planned joints ({planned}) and measured joints ({measured}) have no name in common; \
          choose other topics with --planned and --measured, or give a topic that carries no names those of its joints, in \

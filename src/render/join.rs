@@ -21,7 +21,12 @@ pub(crate) fn gathered(gathered: &Gathered, output: &Path) -> Document {
         output.display()
     );
     let section = Section::plain(Id::SUMMARY, [Sentence::finding(written)]);
-    Document::default().with(next::report(section, &[output])).remarked(remarks)
+    let next = if gathered.planned_joints == 0 {
+        next::plan_missing(section, &[output])
+    } else {
+        next::report(section, &[output])
+    };
+    Document::default().with(next).remarked(remarks)
 }
 
 pub(crate) fn document(joined: &Joined, plan: &Path, output: &Path) -> Document {

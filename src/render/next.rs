@@ -152,6 +152,13 @@ pub(super) fn as_one(files: &[PathBuf]) -> (Option<String>, String) {
     (Some(command(&["join", &names.join(" "), "-o", one])), one.to_owned())
 }
 
+/// After one side of a run was written without the other.
+pub(super) fn plan_missing(section: Section, parts: &[impl AsRef<Path>]) -> Section {
+    let parts: Vec<String> = parts.iter().map(argument).collect();
+    let aim = "A report needs both sides. To put the plan beside the measurement:";
+    step(section, aim, &["join", &parts.join(" "), "--plan", "PLAN.mcap", "-o", "with-plan.mcap"])
+}
+
 /// After a run was written, or the parts of one.
 pub(super) fn report(section: Section, parts: &[impl AsRef<Path>]) -> Section {
     let parts: Vec<String> = parts.iter().map(argument).collect();

@@ -6,7 +6,10 @@ use super::{
     kit::{Block, Document, Id, Section, Sentence, counted, fact},
     next,
 };
-use crate::workflow::record::{Progress, Recorded};
+use crate::{
+    remark::Code,
+    workflow::record::{Progress, Recorded},
+};
 
 /// How far a recording is, in a line.
 pub(crate) fn progress(now: &Progress) -> String {
@@ -34,5 +37,12 @@ pub(crate) fn document(recorded: &Recorded, joined: Option<&Path>) -> Document {
     let with_plan =
         joined.map(|log| Sentence::finding(format!("With the plan beside it: {}.", log.display())));
     let runs = joined.map_or_else(|| logs.clone(), |log| vec![log.to_owned()]);
-    Document::default().with(next::report(section.with_all(with_plan), &runs)).remarked(remarks)
+    let section = section.with_all(with_plan);
+    let one_side = remarks.as_slice().iter().any(|remark| remark.code == Code::OneSide);
+    let next = if one_side && joined.is_none() {
+        next::plan_missing(section, &runs)
+    } else {
+        next::report(section, &runs)
+    };
+    Document::default().with(next).remarked(remarks)
 }

@@ -5,9 +5,12 @@ use crate::log::Recovered;
 
 pub(crate) fn document(output: &str, recovered: &Recovered) -> Document {
     let Recovered { messages, doubtful, blocks, dropped_blocks, attachments, remarks } = recovered;
+    let lost = match dropped_blocks {
+        0 => "none is lost whole".to_owned(),
+        lost => format!("{lost} are damaged and lost"),
+    };
     let saved = format!(
-        "{messages} messages and {attachments} attachments saved to {output}, from {blocks} chunks; {dropped_blocks} \
-         chunks were damaged and are lost."
+        "{messages} messages and {attachments} attachments saved to {output}, from {blocks} chunks, of which {lost}."
     );
     let doubt = (*doubtful > 0).then(|| {
         Sentence::finding(format!(

@@ -254,7 +254,8 @@ pub enum Answer {
     /// A measured start answers it, and its instant is known.
     #[default]
     Timed,
-    /// Too small by plan, or too soon followed by the next start, to tell whether the joint follows.
+    /// Too small by plan, or too soon followed by the next start, to tell whether the joint follows; or the samples are so far apart that
+    /// its instant could be any.
     Unclear,
     /// The joint follows, but crept into the motion or was under way: there is no instant at which it left rest.
     Creeps,

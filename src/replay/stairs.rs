@@ -11,8 +11,8 @@ use crate::{math::median, series::Pair};
 
 /// So many middles are fitted: farther up no rise has the shape of its start.
 const MOST: usize = 6;
-/// Ramps of slow plans, s.
-const RAMPS: [Rise; 3] = [Rise::Ramp(0.4), Rise::Ramp(0.8), Rise::Ramp(1.6)];
+/// Ramps of plans that are slow or begin at their speed, s.
+const RAMPS: [Rise; 4] = [Rise::Ramp(0.002), Rise::Ramp(0.4), Rise::Ramp(0.8), Rise::Ramp(1.6)];
 /// What a rise of another shape lies off a middle by, in steps.
 const SHAPE: f64 = 0.03;
 /// Where no shape comes nearer than this to the middles, in mean squares of what one may lie off, none says when they began.
@@ -154,7 +154,13 @@ fn fit(middles: &[Middle], (t0_s, rise): (f64, Rise), step: f64, stop_speed: f64
     let spread = risen().map(|(f, _, w)| w * (f - mean_f).powi(2)).sum::<f64>();
     let scale = risen().map(|(f, x, w)| w * (f - mean_f) * (x - mean_x)).sum::<f64>() / spread;
     let level = mean_x - scale * mean_f;
-    if !(scale > 0.0 && scale.is_finite()) || level.abs() > OFF_REST * step {
+    // Until its first value it was written as it rests.
+    let rests = |first: &Middle| {
+        let until_s = first.t_s - 0.5 * first.between_s;
+        level + scale * rise.travel((until_s - t0_s).max(0.0)) <= OFF_REST * step
+    };
+    let off_rest = level.abs() > OFF_REST * step || !middles.first().is_some_and(rests);
+    if !(scale > 0.0 && scale.is_finite()) || off_rest {
         return None;
     }
     let squares = risen().map(|(f, x, w)| w * (x - level - scale * f).powi(2)).sum::<f64>();

@@ -11,6 +11,9 @@ use super::{
 };
 use crate::{math::median, series::Pair};
 
+/// A delay whose interval is wider than this, s, and has both signs, is none.
+const VAGUE_S: f64 = 2.5;
+
 /// Measures the answer to a planned motion that starts at `asked`. `until_s` is where the window may not pass: the
 /// next planned start or the end of the segment.
 pub(super) fn transition(
@@ -22,6 +25,9 @@ pub(super) fn transition(
 ) -> Transition {
     let Delay { method, planned_s, measured_s, interval_s } =
         delay(pair, signals, (planned, asked), measured, rules);
+    let vague =
+        interval_s.is_some_and(|[low_s, high_s]| high_s - low_s > VAGUE_S && low_s < 0.0 && high_s > 0.0);
+    let (measured_s, interval_s) = if vague { (None, None) } else { (measured_s, interval_s) };
     let end_s = until_s.min(planned_s + rules.transition_window_s);
     let times = &pair.t_s[planned.segment.clone()];
     let first = planned.segment.start + times.partition_point(|&t| t < planned_s);
@@ -54,6 +60,8 @@ pub(super) fn transition(
         planned_onset_s: planned_s,
         answer: if measured_s.is_some() {
             Answer::Timed
+        } else if vague {
+            Answer::Unclear
         } else {
             let cut = window.end == planned.segment.end && end_s < planned_s + rules.transition_window_s;
             untimed(pair, signals, planned.direction, window, cut, rules)

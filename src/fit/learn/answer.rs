@@ -175,7 +175,7 @@ impl Answer {
 }
 
 /// Where a plan rests: at its beginning and at its end, however shortly, and in between for long enough to tell.
-pub(super) fn rests(planned: &[(f64, f64)]) -> Vec<Range<usize>> {
+fn rests(planned: &[(f64, f64)]) -> Vec<Range<usize>> {
     let (mut rests, mut from) = (Vec::new(), 0);
     let n = planned.len();
     while from < n {
@@ -186,6 +186,14 @@ pub(super) fn rests(planned: &[(f64, f64)]) -> Vec<Range<usize>> {
         from = (end..n).find(|&k| !moves(planned, k)).unwrap_or(n);
     }
     rests
+}
+
+/// Motions of a plan, each from where it leaves rest to where the next one does.
+pub(super) fn motions(planned: &[(f64, f64)]) -> impl Iterator<Item = Range<usize>> {
+    let rests = rests(planned);
+    let begins: Vec<usize> = rests.iter().map(|rest| rest.end).filter(|end| *end < planned.len()).collect();
+    let ends: Vec<usize> = begins.iter().skip(1).copied().chain([planned.len()]).collect();
+    begins.into_iter().zip(ends).map(|(begins, ends)| begins..ends)
 }
 
 /// Whether a plan moves from a step to the next.

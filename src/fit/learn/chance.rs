@@ -10,7 +10,7 @@ use super::{
         model::{Model, STEP_S},
         run::steps_in,
     },
-    answer::{Answer, rests},
+    answer::{Answer, motions},
     correct::{Workspace, largest, rms, unexplained_rad},
 };
 use crate::{
@@ -85,7 +85,7 @@ pub(super) fn unlearnt(
 
 /// The motion of a run that is beyond all others, and the share of what is unexplained in it that is usual.
 fn in_run(left: &[Vec<f64>], k: usize, planned: &[(f64, f64)]) -> Option<(Range<usize>, Chance, f64)> {
-    let motions = motions(&left[k], planned);
+    let motions = of_motions(&left[k], planned);
     let worst = motions.iter().max_by(|a, b| a.rms_rad.total_cmp(&b.rms_rad))?;
     let others = || motions.iter().filter(|motion| motion.steps != worst.steps);
     let beyond =
@@ -112,18 +112,20 @@ fn in_run(left: &[Vec<f64>], k: usize, planned: &[(f64, f64)]) -> Option<(Range<
     Some((worst.steps.clone(), made, usual(&|motion| motion.rms_rad) / worst.rms_rad))
 }
 
-/// From the beginning of each motion to that of the next, less the fade.
-fn motions(left_rad: &[f64], planned: &[(f64, f64)]) -> Vec<Motion> {
-    let rests = rests(planned);
-    let ends = rests.iter().skip(1).map(|rest| rest.end.saturating_sub(steps_in(FADES_S)));
-    let begins = rests.iter().map(|rest| rest.end);
-    let motion = |(begins, ends): (usize, usize)| {
-        let steps = begins..ends.min(left_rad.len());
+/// The motions of a plan, each without the fade before the next.
+fn of_motions(left_rad: &[f64], planned: &[(f64, f64)]) -> Vec<Motion> {
+    let motion = |steps: Range<usize>| {
+        let ends = if steps.end < planned.len() {
+            steps.end - steps_in(FADES_S).min(steps.len())
+        } else {
+            steps.end
+        };
+        let steps = steps.start..ends.min(left_rad.len());
         let own = left_rad.get(steps.clone()).filter(|own| !own.is_empty())?;
         let fastest_rad_s = planned[steps.clone()].iter().map(|planned| planned.1.abs()).fold(0.0, f64::max);
         Some(Motion { steps, fastest_rad_s, rms_rad: rms(own), peak_rad: largest(own) })
     };
-    begins.zip(ends).filter_map(motion).collect()
+    motions(planned).filter_map(motion).collect()
 }
 
 #[cfg(test)]

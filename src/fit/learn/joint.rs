@@ -12,7 +12,7 @@ use super::{
         Aim, CALM_MODEL_HZ, Manner, NONE_RAD, Workspace, faded, first, inverted, largest, unexplained_rad,
     },
     oscillation::{Character, Oscillation},
-    part::is_part,
+    part::{is_part, still_asked},
     shape::{Wanted, shaped},
     spoilt::{Left, unspoilt},
     spread::{compared, spread_rad},
@@ -289,7 +289,13 @@ impl<'a> Joint<'a> {
             let (whole, _) = first(&fit.model, manner, (planned, fade), plain, fit.held_out_r2, workspace);
             if is_part(&sent[from], &within(&whole)) {
                 let share = gain * trust;
-                let next = sent[from].iter().zip(&whole).map(|(sent, whole)| sent + share * (whole - sent));
+                let rest: Vec<f64> =
+                    sent[from].iter().zip(&whole).map(|(sent, whole)| whole - sent).collect();
+                let learnt = manner.learnt(&answers[from].error_rad(planned), 1.0);
+                let asked = still_asked(planned, &rest, &learnt);
+                let more = rest.iter().zip(&learnt).zip(asked);
+                let more = more.map(|((rest, learnt), asked)| asked * rest + (1.0 - asked) * usual * learnt);
+                let next = sent[from].iter().zip(more).map(|(sent, more)| sent + share * more);
                 return (Step::Rest { from, share }, next.collect());
             }
         }

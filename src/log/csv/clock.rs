@@ -35,7 +35,9 @@ pub(super) fn choose(
     if let Some(hz) = options.rate_hz {
         let times = |column: &usize| {
             labels[*column].is_time
-                && look.column(*column).is_ok_and(|found| found.steady() && found.resolves)
+                && look
+                    .column(*column)
+                    .is_ok_and(|found| found.steady() && found.resolves && found.doubt.is_none())
         };
         if let Some(column) = (0..labels.len()).find(times) {
             let message = format!(

@@ -269,7 +269,7 @@ fn joints(
             }
             if commanded {
                 let message = "no column looks like a plan, only like the command: a report gives the error against \
-                               what was sent, not against what was wanted; `hydrotrace join LOG --plan next.mcap -o run.mcap` \
+                               what was sent, not against what was wanted; `hydrotrace join LOG --plan next.mcap -o with-plan.mcap` \
                                puts the plan beside it, or name its columns with --planned JOINT=COLUMN,...";
                 remarks.add(Code::PlanIsCommand, found.len() as u64, message);
             }

@@ -107,9 +107,9 @@ pub(super) fn assemble(
     assembly.kinds.check([&planned, &measured], &mut remarks)?;
     let sides = &mut [("planned", &mut planned), ("measured", &mut measured)];
     assembly.kinds.convert(JointKind::Turns, sides, &mut remarks)?;
-    turns::unwrap_sides(sides, &options.continuous, &mut remarks);
+    let continuous = turns::unwrap_sides(sides, &options.continuous, &mut remarks);
     if let Some(command) = &mut command {
-        turns::bring_to_turn(sides[0].1, &mut command.series, &options.continuous);
+        turns::unwrap_beside(sides[0].1, &mut command.series, &continuous, &mut remarks);
     }
     unset::of_sides(sides, &mut remarks);
     repeated::of_sides(sides, plan_is_command, &mut remarks);
@@ -119,6 +119,7 @@ pub(super) fn assemble(
         held::of_command(command, sides[1].1, &mut remarks);
     }
     unmeasured::of_sides(sides, &mut remarks);
+    let options = &ReadOptions { continuous, ..options.clone() };
     let stood_s = spoilt::of_sides([sides[0].1, sides[1].1], command.as_ref(), options, &mut remarks);
     quality::of_pairs([sides[0].1, sides[1].1], options, assembly.kinds.stated(), &mut remarks);
     assembly.kinds.convert(JointKind::Slides, sides, &mut remarks)?;
@@ -316,7 +317,6 @@ impl Assembly {
         keep_joints(&mut series, &options.joints)?;
         let sides = &mut [("commanded", &mut series)];
         self.kinds.convert(JointKind::Turns, sides, doubts)?;
-        turns::unwrap_turns(sides[0].1, &options.continuous, doubts);
         self.kinds.convert(JointKind::Slides, sides, doubts)?;
         let topic = found.first().map(|c| self.topic(c).to_owned()).unwrap_or_default();
         Ok(Command { topic, series })

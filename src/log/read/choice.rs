@@ -36,7 +36,7 @@ pub(super) fn remark_choice(
         };
         let message = format!(
             "{sent} is what was sent, and nothing in the log looks like the plan behind it: the error is against \
-             the command, not against what was wanted; `hydrotrace join LOG --plan next.mcap -o run.mcap` puts the plan into \
+             the command, not against what was wanted; `hydrotrace join LOG --plan next.mcap -o with-plan.mcap` puts the plan into \
              the log, {fix}"
         );
         remarks.add(Code::PlanIsCommand, commanded.len() as u64, message);

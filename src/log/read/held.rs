@@ -1,7 +1,13 @@
 //! Plans that are written only where they change, as historians and subscriptions write them: between two values the
 //! first one holds.
 
-use super::{quality::is_of_gaps, recording::Command, repeated::LONGEST_S, select_topics::Choice};
+use super::{
+    followed::{gone_before, off},
+    quality::is_of_gaps,
+    recording::Command,
+    repeated::LONGEST_S,
+    select_topics::Choice,
+};
 use crate::{
     math::median,
     remark::{Code, Remarks},
@@ -21,13 +27,9 @@ const STEPS: f64 = 3.0;
 /// measurement beside it, may be one of set values.
 const SPARSER: f64 = 5.0;
 /// It is if a joint has gone less than this share of the way to a value when that comes: no machine answers what is yet to come. A delay
-/// as long as values are apart looks so, too; then lines between them, each at its best delay, s, are off by so many times less.
+/// as long as values are apart looks so, too; then lines between them, each at its best delay, are off by so many times less.
 const BEFORE: f64 = 0.1;
 const LESS: f64 = 2.0;
-const LATEST_S: f64 = 2.0;
-const LATER_S: f64 = 0.05;
-/// Instants at which that is asked.
-const INSTANTS: usize = 500;
 
 /// Holds the plan through its silences, up to the end of the measurement, if it is written so; and the measurement, if
 /// that is, too. `one_file`: one recorder wrote both, so that a plan of few values is what was set, and no key points.
@@ -127,32 +129,6 @@ fn of_set_values(planned: &mut Series, measured: &Series, remarks: &mut Remarks)
         LONGEST_S
     );
     remarks.add(Code::Guessed, values, message);
-}
-
-/// Which share of the way from each value to the next a joint has gone when that comes.
-fn gone_before(plan: &Track, came: &Track) -> f64 {
-    let (mut gone, mut asked) = (0.0, 0.0);
-    for (next_s, two) in plan.t_s().iter().skip(1).zip(plan.position().windows(2)) {
-        let change = two[1] - two[0];
-        gone += change * (came.held_at(*next_s).position - two[0]);
-        asked += change * change;
-    }
-    if asked > 0.0 { gone / asked } else { 0.0 }
-}
-
-/// What a measurement is off a plan that it follows at the best delay, root mean square.
-fn off(plan: &Track, came: &Track) -> f64 {
-    let step = came.len().div_ceil(INSTANTS).max(1);
-    let instants = || came.t_s().iter().zip(came.position()).step_by(step);
-    let at = |late_s: f64| {
-        let mut cursor = 0;
-        let squares =
-            instants().map(|(t_s, q)| (q - plan.held_after(&mut cursor, t_s - late_s).position).powi(2));
-        squares.sum::<f64>()
-    };
-    let delays_s = std::iter::successors(Some(0.0), |late_s| Some(late_s + LATER_S))
-        .take_while(|late_s| *late_s <= LATEST_S);
-    (delays_s.map(at).fold(f64::INFINITY, f64::min) / instants().count().max(1) as f64).sqrt()
 }
 
 /// A track that holds each of its values until the next one, the last to an instant, with a sample in every so many seconds: a step is

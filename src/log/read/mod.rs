@@ -10,6 +10,7 @@ mod content;
 mod cylinders;
 mod description;
 mod extract;
+mod followed;
 mod frames;
 mod held;
 mod indexed;
@@ -173,6 +174,7 @@ impl ScannedLog<'_> {
 }
 
 fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, LogError> {
+    let path = extracted.path.clone();
     let damage: Vec<String> = extracted
         .remarks
         .as_slice()
@@ -189,7 +191,7 @@ fn recording(extracted: Extracted, options: &ReadOptions) -> Result<Recording, L
         if damage.is_empty() || !error.is_of_something_not_found() {
             return error;
         }
-        LogError::Damaged { error: Box::new(error), damage: damage.join("; ") }
+        LogError::Damaged { error: Box::new(error), damage: damage.join("; "), path }
     })
 }
 

@@ -1,6 +1,9 @@
 //! Values that are slower than their log, of a sensor or of a planner: each is written again until the next one comes.
 
-use super::sender::sampled;
+use super::{
+    followed::{gone_before, off},
+    sender::{CHANGES as SENT_CHANGES, sampled},
+};
 use crate::{
     remark::{Code, Remarks},
     series::{Series, Track, rounding, split_at_gaps},
@@ -20,6 +23,18 @@ const LONGEST_SENT_S: f64 = 0.5;
 /// Rows that are looked at first.
 const HEAD: usize = 4000;
 
+/// Samples of a plan are held for longer, s, or are fewer than tell by themselves, where the joint followed what goes on between them:
+/// what it is off by is this many times less, and where they are held for longer it has gone this share of the way to a value before
+/// that comes, which no machine does that answers it, or is off by much less.
+const SLOWEST_S: f64 = 2.0;
+const FEW: usize = 8;
+const LESS: f64 = 2.0;
+const MUCH_LESS: f64 = 5.0;
+const BEFORE: f64 = 0.2;
+
+/// A sender has one clock for all joints: each is held for as long as another, within this share.
+const ONE_CLOCK: f64 = 0.1;
+
 /// Keeps of each value that is written again its first row; it says no more of when it was measured or planned. `is_sent`: the plan
 /// is what was sent.
 pub(super) fn of_sides(
@@ -28,8 +43,32 @@ pub(super) fn of_sides(
     remarks: &mut Remarks,
 ) {
     let longest_s = if is_sent { LONGEST_SENT_S } else { LONGEST_S };
-    of_side(planned, |plan| sent(plan, longest_s), ["planned", "its planner", "interpolated"], remarks);
+    let mut held = planned_samples(planned, measured, longest_s).into_iter();
+    of_side(planned, |_| held.next().flatten(), ["planned", "its planner", "interpolated"], remarks);
     of_side(measured, fresh, ["measured", "a sensor", "not judged"], remarks);
+}
+
+/// What there was of each plan that is held, by itself, by what its joint followed, or by the clock of another joint.
+fn planned_samples(planned: &Series, measured: &Series, longest_s: f64) -> Vec<Option<Track>> {
+    let by_itself = |plan: &Track| {
+        let beside = || measured.tracks.iter().find(|beside| beside.name() == plan.name());
+        sent(plan, longest_s).or_else(|| followed(plan, beside()?, longest_s))
+    };
+    let mut found: Vec<Option<Track>> = planned.tracks.iter().map(by_itself).collect();
+    let clocks: Vec<(&[f64], f64)> = (planned.tracks.iter().zip(&found))
+        .filter_map(|(plan, found)| Some((plan.t_s(), found.as_ref()?.sample_interval_s())))
+        .collect();
+    if clocks.is_empty() {
+        return found;
+    }
+    for (plan, found) in planned.tracks.iter().zip(&mut found).filter(|(_, found)| found.is_none()) {
+        let on_clock = |own: &Track| {
+            let near = |held_s: f64| (own.sample_interval_s() / held_s - 1.0).abs() < ONE_CLOCK;
+            clocks.iter().any(|(t_s, held_s)| plan.t_s() == *t_s && near(*held_s))
+        };
+        *found = sampled(plan, FEW).filter(|own| on_clock(own) && rounding(plan).is_none());
+    }
+    found
 }
 
 /// The same of what was sent: sent again as it is logged, it would come late and in steps.
@@ -45,7 +84,7 @@ pub(super) fn of_command(command: &mut Series, remarks: &mut Remarks) {
 /// `of`: what there was of a track, if it is held.
 fn of_side(
     series: &mut Series,
-    of: impl Fn(&Track) -> Option<Track>,
+    mut of: impl FnMut(&Track) -> Option<Track>,
     [side, source, between]: [&str; 3],
     remarks: &mut Remarks,
 ) {
@@ -67,8 +106,18 @@ fn of_side(
 /// The samples of a motion that was sent slower than it was logged: set values that step from one to the next are held longer, and
 /// those that are rounded change when the plan passes from one to the next. Between them it goes on smoothly.
 fn sent(track: &Track, longest_s: f64) -> Option<Track> {
-    let found = sampled(track)?;
+    let found = sampled(track, SENT_CHANGES)?;
     (found.sample_interval_s() <= longest_s && rounding(track).is_none()).then_some(found)
+}
+
+/// The samples of a motion that a joint followed.
+fn followed(track: &Track, came: &Track, longest_s: f64) -> Option<Track> {
+    let found = sampled(track, FEW).filter(|_| rounding(track).is_none())?;
+    let held_s = found.sample_interval_s();
+    let [by_lines, by_steps] = [off(&found, came), off(track, came)];
+    let slow = || MUCH_LESS * by_lines < by_steps || gone_before(&found, came) > BEFORE;
+    let follows = LESS * by_lines < by_steps && (held_s <= longest_s || held_s <= SLOWEST_S && slow());
+    follows.then_some(found)
 }
 
 fn differ(a: f64, b: f64) -> bool {

@@ -5,8 +5,8 @@ use crate::{
     series::{Track, split_at_gaps},
 };
 
-/// Values that tell, at least.
-const CHANGES: usize = 30;
+/// Values that tell, at least, by themselves.
+pub(super) const CHANGES: usize = 30;
 /// Rows that a value is held for in the median, at least: fewer are a log in which a row was lost.
 const HELD_ROWS: f64 = 1.5;
 /// Rows that are looked at first.
@@ -32,25 +32,25 @@ const LOST_TICKS: f64 = 3.0;
 const LOST_STEP: f64 = 1.5;
 
 /// The values of a track that is held, each at its tick where the sender's clock is even, and where it came elsewhere; `None` of one
-/// that is not held.
-pub(super) fn sampled(track: &Track) -> Option<Track> {
+/// that is not held, or has fewer than `least` values.
+pub(super) fn sampled(track: &Track, least: usize) -> Option<Track> {
     let (t_s, q) = (track.t_s(), track.position());
     let changed = |rows: usize| (1..rows).filter(|&i| (q[i] - q[i - 1]).abs() > 0.0);
     // Most plans tell by their first rows that each is another.
     let head = HEAD.min(q.len());
     let first = changed(head).count();
-    if first >= CHANGES && HELD_ROWS * first as f64 > head as f64 {
+    if first >= least && HELD_ROWS * first as f64 > head as f64 {
         return None;
     }
     let changes: Vec<usize> = changed(q.len()).collect();
-    if changes.len() < CHANGES || HELD_ROWS * changes.len() as f64 > q.len() as f64 {
+    if changes.len() < least || HELD_ROWS * changes.len() as f64 > q.len() as f64 {
         return None;
     }
     let came_s: Vec<f64> = changes.iter().map(|&i| t_s[i]).collect();
     let value: Vec<f64> = changes.iter().map(|&i| q[i]).collect();
     let (usual_s, row_s) = (median(steps_s(&came_s)), track.sample_interval_s());
     // Values that come and go are no plan of a motion.
-    if usual_s < HELD_ROWS * row_s || TURNS * turns(&value) > value.len() {
+    if usual_s < HELD_ROWS * row_s || TURNS * turns(&came_s, &value, REST_TICKS * usual_s) > value.len() {
         return None;
     }
     let (t_s, q) = match Clock::of(&came_s, row_s) {
@@ -71,9 +71,11 @@ fn steps_s(came_s: &[f64]) -> Vec<f64> {
     came_s.windows(2).map(|two| two[1] - two[0]).collect()
 }
 
-/// How often values turn back.
-fn turns(value: &[f64]) -> usize {
-    value.windows(3).filter(|three| (three[2] - three[1]) * (three[1] - three[0]) < 0.0).count()
+/// How often values turn back without a rest of so long.
+fn turns(came_s: &[f64], value: &[f64], rests_s: f64) -> usize {
+    let back = |k: &usize| (value[k + 2] - value[k + 1]) * (value[k + 1] - value[*k]) < 0.0;
+    let moving = |k: &usize| came_s[k + 2] - came_s[k + 1] < rests_s && came_s[k + 1] - came_s[*k] < rests_s;
+    (0..value.len().saturating_sub(2)).filter(moving).filter(back).count()
 }
 
 /// Values at instants, with those of rests between: each holds until so long before the next, but where one was lost.
@@ -244,7 +246,7 @@ mod tests {
         let t_s: Vec<f64> = (0..1600).map(|k| f64::from(k) * 0.01 + 0.003).collect();
         let at = |t: &f64| sent.iter().take_while(|(at_s, _)| at_s <= t).last().map_or(0.0, |(_, q)| *q);
         let track = Track::new("J", t_s.clone(), t_s.iter().map(at).collect(), &[]).unwrap();
-        let found = sampled(&track)?;
+        let found = sampled(&track, CHANGES)?;
         let x: Vec<f64> = (0..800).map(|k| found.held_at(f64::from(k) * 0.02).position).collect();
         let most = |x: &dyn Fn(usize) -> f64| {
             (1..799).map(|k| (x(k + 1) - 2.0 * x(k) + x(k - 1)).abs() / 4e-4).fold(0.0, f64::max)
@@ -291,7 +293,7 @@ mod tests {
                 held
             });
             let track = Track::new("J", rows.clone(), sent.collect(), &[]).unwrap();
-            let found = sampled(&track).unwrap();
+            let found = sampled(&track, CHANGES).unwrap();
             let steps =
                 rows.windows(2).map(|two| found.held_at(two[1]).position - found.held_at(two[0]).position);
             let steps: Vec<f64> = steps.collect();

@@ -6,26 +6,53 @@ use crate::{
     math::median,
     remark::{Code, Remarks},
     series::{JointKind, Series, Track},
+    text::shell_word,
 };
 
 /// Instants at which the sides are compared, evenly spread over the measurement.
 const INSTANTS: usize = 1000;
 
-/// Undoes full turns of joints declared continuous, within plan and measurement and between them.
+/// Samples that are farther apart do not tell a full turn from a motion, s.
+const LONGEST_S: f64 = 0.25;
+
+/// Undoes full turns of joints declared continuous, and of those that step by one in plan and measurement alike, which no joint does
+/// that has end stops; within plan and measurement and between them. Returns all of these.
 pub(super) fn unwrap_sides(
     sides: &mut [(&str, &mut Series); 2],
     continuous: &[String],
     remarks: &mut Remarks,
-) {
-    for (_, side) in &mut *sides {
-        unwrap_turns(side, continuous, remarks);
-    }
+) -> Vec<String> {
     let [(_, planned), (_, measured)] = sides;
-    bring_to_turn(planned, measured, continuous);
+    let steps = |track: &Track| track.turns() && track.sample_interval_s() < LONGEST_S && turns(track) > 0;
+    let alike =
+        planned.tracks.iter().filter(|plan| steps(plan) && measured.track(plan.name()).is_some_and(steps));
+    let alike = alike.map(|plan| plan.name().to_owned()).filter(|name| !continuous.contains(name));
+    let alike: Vec<String> = alike.collect();
+    let message = format!(
+        "joints whose angle steps by a full turn in plan and measurement alike: {}; taken for joints without end stops, as --continuous {} says",
+        alike.join(", "),
+        shell_word(&alike.join(","))
+    );
+    remarks.add(Code::Wrapped, alike.len() as u64, message);
+    let continuous = [continuous, &alike].concat();
+    unwrap_turns(planned, &continuous, remarks);
+    unwrap_beside(planned, measured, &continuous, remarks);
+    continuous
+}
+
+/// Undoes full turns of joints declared continuous, within a side and between it and the plan.
+pub(super) fn unwrap_beside(
+    planned: &Series,
+    series: &mut Series,
+    continuous: &[String],
+    remarks: &mut Remarks,
+) {
+    unwrap_turns(series, continuous, remarks);
+    bring_to_turn(planned, series, continuous);
 }
 
 /// Undoes full turns of joints declared continuous; remarks on them elsewhere.
-pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: &mut Remarks) {
+fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: &mut Remarks) {
     for track in series.tracks.iter_mut().filter(|track| track.turns()) {
         let turns = turns(track);
         if turns == 0 {
@@ -49,7 +76,7 @@ pub(super) fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: 
 }
 
 /// Moves joints declared continuous by whole turns to where the plan has them for most of the run.
-pub(super) fn bring_to_turn(planned: &Series, series: &mut Series, continuous: &[String]) {
+fn bring_to_turn(planned: &Series, series: &mut Series, continuous: &[String]) {
     for track in series.tracks.iter_mut().filter(|track| track.turns()) {
         let Some(plan) = planned.track(track.name()).filter(|plan| plan.turns()) else { continue };
         if !continuous.iter().any(|name| name == track.name()) {
@@ -129,5 +156,16 @@ mod tests {
             assert_eq!(measured, before);
             assert!(off(&["a".into()], &mut measured) < 0.02);
         }
+    }
+
+    #[test]
+    fn full_turns_of_plan_and_measurement_alike_are_undone_and_said_to_be() {
+        let wrapped = |late_s: f64| series(move |t| (3.0 * (t - late_s)).rem_euclid(TAU));
+        let (mut planned, mut measured, mut remarks) = (wrapped(0.0), wrapped(0.1), Remarks::default());
+        let sides = &mut [("planned", &mut planned), ("measured", &mut measured)];
+        assert_eq!(unwrap_sides(sides, &[], &mut remarks), ["a"]);
+        let both = planned.tracks[0].position().iter().zip(measured.tracks[0].position()).skip(20);
+        assert!(both.clone().all(|(plan, came)| (plan - came - 0.3).abs() < 1e-9));
+        assert!(matches!(remarks.as_slice(), [one] if one.code == Code::Wrapped), "{remarks:?}");
     }
 }

@@ -38,6 +38,7 @@ pub(super) fn in_short(comparison: &Comparison) -> Vec<Sentence> {
     let compares = idle != Some(Idle::NoPair);
     lines.extend(together(comparison).filter(|_| compares).filter_map(whole_run));
     lines.extend(against(comparison));
+    lines.extend(rest_farther(comparison));
     lines.push(plans(comparison));
     lines.extend(comparison.after.iter().filter_map(|run| {
         let of = if comparison.after.len() > 1 { format!(" of {}", run.log) } else { String::new() };
@@ -92,7 +93,7 @@ fn joints(comparison: &Comparison, peaks: &[&Summary]) -> Option<String> {
     });
     let named: Vec<String> = named.into_iter().flatten().collect();
     (differ && comparison.joints.len() > 1)
-        .then(|| format!("By joint, where the interval leaves out zero: {}.", named.join("; ")))
+        .then(|| format!("By joint, where the interval clearly leaves out zero: {}.", named.join("; ")))
 }
 
 /// What a test of a run or two a side does not tell.
@@ -185,15 +186,27 @@ fn whole_run(all: &Figures) -> Option<String> {
 
 /// Joints that a mean over all of them hides.
 fn against(comparison: &Comparison) -> Option<String> {
-    let one = |(own, change): &(&Figures, Change)| {
-        let [before, after] =
-            [change.before, change.after].map(|value| optional(value, |v| position(own.kind, v)));
-        let share = change.ratio.map_or(String::new(), |ratio| format!(" ({} %)", percent(ratio - 1.0)));
-        format!("{} {before} -> {after}{share}", own.joint.as_deref().unwrap_or_default())
-    };
-    let found: Vec<String> = comparison.against().iter().map(one).collect();
+    let found: Vec<String> = comparison.against().iter().map(changed).collect();
     (!found.is_empty())
         .then(|| format!("Worse while others became better, by rms error: {}.", found.join(", ")))
+}
+
+/// Joints that rest elsewhere.
+fn rest_farther(comparison: &Comparison) -> Option<String> {
+    let found: Vec<String> = comparison.rest_farther().iter().map(changed).collect();
+    (!found.is_empty()).then(|| {
+        format!(
+            "Farther from the plan where it rests, by rms error: {}; a zero, a load or a stop has changed, or a motion comes to its end later.",
+            found.join(", ")
+        )
+    })
+}
+
+fn changed((own, change): &(&Figures, Change)) -> String {
+    let [before, after] =
+        [change.before, change.after].map(|value| optional(value, |v| position(own.kind, v)));
+    let share = change.ratio.map_or(String::new(), |ratio| format!(" ({} %)", percent(ratio - 1.0)));
+    format!("{} {before} -> {after}{share}", own.joint.as_deref().unwrap_or_default())
 }
 
 /// How far the tool was off, before and after.

@@ -64,9 +64,15 @@ pub(crate) fn scanned(scanned: &Scanned) -> Document {
         )));
     }
     let into = argument(&scanned.into);
-    let next = section
-        .with(Sentence::advice("To see which joints change over the days:"))
-        .with(Block::Command(command(&["fleet", "drift", &into])));
+    let next = if scanned.machines.is_empty() {
+        let aim = "No log names its machine, and answers are by machine: scan again with --machine-from path:1, which takes the folder of \
+                   each log, or as `hydrotrace fleet scan --help` says.";
+        section.with(Sentence::advice(aim))
+    } else {
+        section
+            .with(Sentence::advice("To see which joints change over the days:"))
+            .with(Block::Command(command(&["fleet", "drift", &into])))
+    };
     Document::default().with(next).remarked(&scanned.remarks)
 }
 

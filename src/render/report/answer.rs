@@ -4,7 +4,7 @@ use super::{
     method::method,
     resting::at_rest,
     steps::{LEARNT, named, replanned, told, without, words},
-    tables::{stray, verdicts},
+    tables::{self, stray, verdicts},
     together::Together,
     tool, why,
 };
@@ -39,7 +39,7 @@ pub(crate) fn answer(report: &Report, explain: bool) -> Document {
     let mut facts = vec![fact("run", run)];
     facts.extend(at_tool(report));
     facts.extend(report.fault.as_ref().map(|fault| fact("fault", told(fault).join(". "))));
-    facts.push(worst(report));
+    facts.extend(worst(report));
     facts.extend(why(report));
     facts.extend(starts(replay));
     facts.extend(astray(report));
@@ -67,17 +67,17 @@ fn at_tool(report: &Report) -> Option<Fact> {
     Some(fact("tool", format!("{} mm off at {:.1} s{end}{cause}", mm(worst.deviation.error_m), worst.time_s)))
 }
 
-fn worst(report: &Report) -> Fact {
-    let Some(worst) = report.worst() else { return fact("starts", "no planned start from rest") };
+fn worst(report: &Report) -> Option<Fact> {
+    let none = || report.replay.transitions.is_empty().then(|| fact("starts", "no planned start from rest"));
+    let Some(worst) = report.worst() else { return none() };
     let leaves = match worst.onset_delay_s {
-        Some(delay_s) => format!("leaves {}", late(delay_s)),
+        Some(delay_s) => format!("leaves {}{}", late(delay_s), tables::wide(worst)),
         None => "has no start that can be timed".to_owned(),
     };
     let off = position(worst.joint_kind, worst.peak_error);
-    fact(
-        "worst",
-        format!("{} {leaves} at {:.1} s; its error peaks at {off}", worst.joint, worst.planned_onset_s),
-    )
+    let told =
+        format!("{} {leaves} at {:.1} s; its error peaks at {off}", worst.joint, worst.planned_onset_s);
+    Some(fact("worst", told))
 }
 
 fn why(report: &Report) -> Option<Fact> {

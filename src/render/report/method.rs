@@ -95,7 +95,7 @@ pub(super) fn method(report: &Report) -> Option<Section> {
             format!(
                 "time between plan and joint passing the same speed. never: the joint has no start, and within the window it covers less than \
                  {:.0} % of the planned travel. creeps: it covers more, but moved before or crept into the motion, so its start \
-                 has no time. unclear: the planned motion is too small for the noise, or the next start comes within {:.0} s. Only \
+                 has no time. unclear: the planned motion is too small for the noise, or the next start comes within {:.0} s, or the samples are too far apart to tell. Only \
                  never counts as unanswered; creeps and unclear count as undated",
                 100.0 * rules.follow_share,
                 rules.match_after_s,

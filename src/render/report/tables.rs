@@ -162,7 +162,7 @@ pub(super) fn stray(report: &Report, joint: &JointReplay) -> Option<String> {
 }
 
 /// The interval of a delay that it hardly tells.
-fn wide(start: &Transition) -> String {
+pub(super) fn wide(start: &Transition) -> String {
     const WIDE: (f64, f64) = (0.1, 0.5);
     let interval = start.onset_delay_interval_s.zip(start.onset_delay_s);
     let told = interval.filter(|([low, high], delay)| high - low > WIDE.0 + WIDE.1 * delay.abs());
@@ -176,7 +176,7 @@ pub(super) fn worst_sentence(worst: &Transition) -> String {
         Some(delay_s) => format!("leaves {} ms before its plan{}", ms(-delay_s), wide(worst)),
         None => match worst.answer {
             Answer::Creeps => "creeps or already moves when its plan starts".to_owned(),
-            Answer::Unclear => "has a planned motion too small to tell when it starts".to_owned(),
+            Answer::Unclear => "has a start that cannot be timed: its planned motion is too small, or its samples are too far apart".to_owned(),
             Answer::Timed | Answer::Never => "does not follow its plan".to_owned(),
         },
     };

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Change, Changes, Figures, GateResult, Run, Summary, TransitionPair, Unpaired, Verdict, figures::against,
+    Change, Changes, Figures, GateResult, Run, Summary, TransitionPair, Unpaired, Verdict,
+    figures::{against, rest_farther},
     summary::overall,
 };
 use crate::{
@@ -69,6 +70,11 @@ impl Comparison {
     /// Joints whose error over the run grew while that of others fell, the largest growth first.
     pub fn against(&self) -> Vec<(&Figures, Change)> {
         against(&self.whole_run)
+    }
+
+    /// Joints that rest farther from their plan than before.
+    pub fn rest_farther(&self) -> Vec<(&Figures, Change)> {
+        rest_farther(&self.whole_run)
     }
 }
 

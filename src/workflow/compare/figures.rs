@@ -9,6 +9,7 @@ use super::{
 use crate::{
     replay::{JointReplay, Metric, Rules, Together, ToolReplay, TrackingError, peak_motion},
     series::JointKind,
+    units::DEGREE_RAD,
     workflow::report::Report,
 };
 
@@ -110,6 +111,21 @@ pub(super) fn against(whole_run: &[Figures]) -> Vec<(&Figures, Change)> {
         single().map(|own| (own, rms(own))).filter(|(own, change)| grew(own, change)).collect();
     found.sort_by(|(_, a), (_, b)| b.difference.unwrap_or(0.0).total_cmp(&a.difference.unwrap_or(0.0)));
     found
+}
+
+/// A joint rests farther from its plan whose error at standstill, root mean square, has grown by this factor, and by this, rad or m.
+const RESTS_FARTHER: f64 = 3.0;
+const RESTS_BY: [f64; 2] = [0.1 * DEGREE_RAD, 1e-3];
+
+/// Joints that rest farther from their plan than before, with their error at standstill: a mean of starts this way and that hides them.
+pub(super) fn rest_farther(whole_run: &[Figures]) -> Vec<(&Figures, Change)> {
+    let rests = |figures: &Figures| figures.changes.get("standstill_rms");
+    let farther = |(own, change): &(&Figures, Change)| {
+        change.ratio.is_some_and(|ratio| ratio > RESTS_FARTHER)
+            && change.difference.is_some_and(|by| by > RESTS_BY[usize::from(own.kind == JointKind::Slides)])
+    };
+    let single = whole_run.iter().filter(|figures| figures.joint.is_some());
+    single.map(|own| (own, rests(own))).filter(farther).collect()
 }
 
 /// The figures at the tool, where every run has the same one.

@@ -26,6 +26,9 @@ pub struct Gathered {
     pub messages: u64,
     /// Joints whose measurement was read.
     pub joints: usize,
+    /// Joints whose plan was read; none of a measurement alone.
+    #[serde(default)]
+    pub planned_joints: usize,
     /// From the first to the last measurement, s.
     pub duration_s: f64,
     /// Doubts about the data.
@@ -66,6 +69,7 @@ pub fn gather(inputs: &Inputs) -> Result<Gathered, JoinFailure> {
         files,
         messages,
         joints: run.measured.tracks.len(),
+        planned_joints: run.planned.tracks.len(),
         duration_s: to_s - from_s,
         remarks: run.remarks,
     })

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::ReplanFailure;
+use super::{ReplanFailure, peaks::Peaks};
 use crate::{
     fit::{AFTER_S, Trial},
     log::Recording,
@@ -49,7 +49,8 @@ pub struct PastRun {
     pub path: PathBuf,
     /// Whether something else than the plan was sent.
     pub corrected: bool,
-    /// Mean peak error of its starts and reversals, rad; null without any.
+    /// Mean peak error of its starts and reversals, rad; null without any. One that stands alone, in its joint and among the runs, counts
+    /// as the next largest of its joint.
     pub mean_peak_rad: Option<f64>,
     /// Root mean square error over all joints, the whole plan and what all logs have of four seconds after it, rad.
     #[serde(default)]
@@ -103,6 +104,7 @@ impl History {
         let rest_s = moving_s(plan).map_or(0.0, |[_, moving_to_s]| end_s - moving_to_s);
         let mut after_s = AFTER_S;
         let mut held: Vec<Held> = Vec::new();
+        let mut peaks: Vec<Peaks> = Vec::new();
         for (place, (log, recording)) in names.iter().zip(recordings).enumerate() {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
             let Some(starts_s) = found_at_s(plan, &*bridged(&recording.planned)?, from_s - PLAN_LEAD_S)?
@@ -140,18 +142,23 @@ impl History {
                 log: log.clone(),
                 path: paths[place].clone(),
                 corrected: !within(&sent, plan, SAME_RAD),
-                mean_peak_rad: replay(&recording.pairs(), rules).mean_peak_rad(),
+                mean_peak_rad: None,
                 rms_error_rad: 0.0,
                 p95_error_rad: 0.0,
                 after_s: (rest_s + rests_s.min(seen_s)).max(0.0),
                 promised: Carried::of(recording).promise(),
             });
+            peaks.push(Peaks::of(&replay(&recording.pairs(), rules)));
             history.corrections_rad.push(farthest(&sent, plan));
             history.series.push((sent, measured));
             history.places.push(place);
         }
         if let Some((newest, others)) = held.split_last() {
             others.iter().try_for_each(|other| newest.check(other))?;
+        }
+        for (k, run) in history.runs.iter_mut().enumerate() {
+            let others = peaks.iter().enumerate().filter(|(other, _)| *other != k).map(|(_, peaks)| peaks);
+            run.mean_peak_rad = peaks[k].usual_mean(others);
         }
         // Only what all logs have can be compared.
         for (run, (_, measured)) in history.runs.iter_mut().zip(&mut history.series) {

@@ -22,6 +22,7 @@ mod order;
 mod out_of_time;
 mod outcome;
 mod parts;
+mod peaks;
 mod predicted;
 mod retime;
 mod same_way;
