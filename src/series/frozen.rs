@@ -29,6 +29,9 @@ const BRIEF: Least = Least { lasts_s: 0.15, meets_s: 0.0, share: 0.1 };
 /// repeat the one before, and repeats at least so many here,
 const REPEATS: f64 = 0.02;
 const MANY: usize = 20;
+/// which may be most of the run where so many times as many samples are elsewhere,
+const MOST: f64 = 0.9;
+const TELL: usize = 10;
 /// or what it shows then jumps, by more than this share of what the plan moved meanwhile and so many times as far as it ever does.
 const JUMPS: f64 = 0.5;
 const FARTHER: f64 = 3.0;
@@ -72,7 +75,8 @@ pub fn seen(planned: &Track, measured: &Track) -> Option<Track> {
     };
     let still: Vec<&Range<usize>> = found.iter().filter(surely).collect();
     let stood: usize = still.iter().map(|stretch| stretch.len()).sum();
-    if stood == 0 || 2 * stood > q.len() {
+    let most = if is_noisy && elsewhere().count() >= TELL * MANY { MOST } else { 0.5 };
+    if stood == 0 || stood as f64 > most * q.len() as f64 {
         return None;
     }
     // The first sample of a stretch was measured.

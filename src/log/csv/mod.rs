@@ -1,9 +1,6 @@
-//! CSV files of controllers (PLC traces, RTDE recordings, exports): what their columns are, and
-//! the log that they become.
+//! CSV files of controllers (PLC traces, RTDE recordings, exports): what their columns are, and the log that they become.
 //!
-//! `dialect` finds separator and decimal mark, `head` the names above the numbers, `label` what a
-//! name says, `clock` which column is the time, `layout` which column is which joint's; `read` then walks all
-//! rows. What a file does not say, [`CsvOptions`] do; what is only guessed is a remark.
+//! `dialect` finds separator and mark, `head` names, `label` what they say, `clock` the time, `layout` joints; [`CsvOptions`] say the rest.
 
 mod again;
 mod behind;
@@ -29,6 +26,7 @@ mod expression;
 mod given;
 mod grouping;
 mod guess;
+mod halves;
 mod head;
 mod judged;
 mod keys;
@@ -191,6 +189,7 @@ fn of_other_form(
     }
     let table = lvm::as_table(text)
         .or_else(|| scope::as_table(text, &mut remarks))
+        .or_else(|| halves::joined(text, &mut remarks))
         .or_else(|| levels::joined(name, text, options))?;
     Some(read_table(name, Cow::Owned(table), options, remarks))
 }

@@ -107,7 +107,14 @@ pub(super) fn read(
         remarks.add(Code::NotClosed, 1, message);
     }
     let of_day = time.is_of_day();
-    row_order::put(&mut stamp_ns, &mut columns, of_day, remarks);
+    let repeats =
+        |row: usize| columns.values().all(|one| one.values[row].to_bits() == one.values[row - 1].to_bits());
+    if let Some(rows) = row_order::kept(&stamp_ns, &repeats, of_day, remarks) {
+        stamp_ns = rows.iter().map(|row| stamp_ns[*row]).collect();
+        for column in columns.values_mut() {
+            column.take(&rows);
+        }
+    }
     let absolute = time.settle(&mut stamp_ns);
     let outside = drop_outside(&mut stamp_ns, &mut columns);
     let clock = time.columns().first().map_or("", |&column| head.names[column].as_str());
@@ -214,6 +221,12 @@ impl Column {
     pub(super) fn of(values: Vec<f64>) -> Self {
         let numbers = values.iter().filter(|value| value.is_finite()).count() as u64;
         Self { values, numbers, ..Self::default() }
+    }
+
+    /// These rows, in this order.
+    fn take(&mut self, rows: &[usize]) {
+        self.values = rows.iter().map(|row| self.values[*row]).collect();
+        self.numbers = self.values.iter().filter(|value| value.is_finite()).count() as u64;
     }
 
     /// Without the last row.

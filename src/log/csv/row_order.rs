@@ -1,8 +1,5 @@
 //! Rows in the order of their times, each once.
 
-use std::collections::BTreeMap;
-
-use super::read::Column;
 use crate::{
     math::median,
     remark::{Code, Remarks},
@@ -15,64 +12,48 @@ pub(super) const FEWEST: usize = 8;
 const MANY: usize = 5;
 
 /// Steps that are all within these of the one in the middle are even.
-const EVEN: [f64; 2] = [0.5, 1.5];
+const EVEN: [f64; 2] = [0.7, 1.4];
 
 /// Share of rows with the time of the row before that repeat all of it, where rows were written twice.
 const WRITTEN_TWICE: f64 = 0.99;
 
-/// Puts rows in the order of their times where they have none, and leaves out those that were written twice.
-pub(super) fn put(
-    stamp_ns: &mut Vec<i64>,
-    columns: &mut BTreeMap<usize, Column>,
+/// The rows that count, in the order of their times; `None` where that is all of them as they stand. `repeats` says of a row whether it has
+/// the numbers of the one before.
+pub(super) fn kept(
+    stamp_ns: &[i64],
+    repeats: &dyn Fn(usize) -> bool,
     of_day: bool,
     remarks: &mut Remarks,
-) {
-    if runs_backwards(stamp_ns) {
-        stamp_ns.reverse();
-        for column in columns.values_mut() {
-            column.values.reverse();
-        }
-    }
-    let repeats = repeats(stamp_ns, columns);
-    if repeats.iter().any(|repeats| *repeats) {
-        let rows: Vec<usize> = (0..stamp_ns.len()).filter(|row| !repeats[*row]).collect();
-        let left_out = (stamp_ns.len() - rows.len()) as u64;
-        take(&rows, stamp_ns, columns);
+) -> Option<Vec<usize>> {
+    let all = stamp_ns.len();
+    let mut rows: Vec<usize> = (0..all).collect();
+    if written_twice(stamp_ns, repeats) {
+        rows.retain(|row| *row == 0 || stamp_ns[*row] != stamp_ns[row - 1] || !repeats(*row));
         let message = "rows that repeat the row before, time and all: they were written twice; left out";
-        remarks.add(Code::DuplicateStamp, left_out, message);
+        remarks.add(Code::DuplicateStamp, (all - rows.len()) as u64, message);
     }
-    if let Some(order) = order(stamp_ns).filter(|_| !of_day) {
+    let backwards = runs_backwards(stamp_ns);
+    if backwards {
+        rows.reverse();
+    }
+    let stamps: Vec<i64> = rows.iter().map(|row| stamp_ns[*row]).collect();
+    if let Some(order) = order(&stamps).filter(|_| !of_day) {
         let message = "rows in no order of their times; put in order";
-        remarks.add(Code::Reordered, stamp_ns.windows(2).filter(|w| w[1] < w[0]).count() as u64, message);
-        take(&order, stamp_ns, columns);
+        remarks.add(Code::Reordered, stamps.windows(2).filter(|w| w[1] < w[0]).count() as u64, message);
+        return Some(order.into_iter().map(|place| rows[place]).collect());
     }
+    (backwards || rows.len() < all).then_some(rows)
 }
 
-fn take(rows: &[usize], stamp_ns: &mut Vec<i64>, columns: &mut BTreeMap<usize, Column>) {
-    *stamp_ns = rows.iter().map(|row| stamp_ns[*row]).collect();
-    for column in columns.values_mut() {
-        column.values = rows.iter().map(|row| column.values[*row]).collect();
-        column.numbers = column.values.iter().filter(|value| value.is_finite()).count() as u64;
-    }
-}
-
-/// Which rows were written twice: nearly all that have the time of the row before repeat its numbers, too. Those of a clock that is
+/// Whether rows were written twice: nearly all that have the time of the row before repeat its numbers, too. Those of a clock that is
 /// coarser than the rows do not.
-fn repeats(stamp_ns: &[i64], columns: &BTreeMap<usize, Column>) -> Vec<bool> {
-    let again = |row: usize| row > 0 && stamp_ns[row] == stamp_ns[row - 1];
-    let same = |row: usize| {
-        again(row) && columns.values().all(|one| one.values[row].to_bits() == one.values[row - 1].to_bits())
-    };
-    let (mut all, mut repeats) = (0_usize, vec![false; stamp_ns.len()]);
-    for (row, repeats) in repeats.iter_mut().enumerate() {
-        all += usize::from(again(row));
-        *repeats = same(row);
+fn written_twice(stamp_ns: &[i64], repeats: &dyn Fn(usize) -> bool) -> bool {
+    let (mut again, mut same) = (0_usize, 0_usize);
+    for row in (1..stamp_ns.len()).filter(|row| stamp_ns[*row] == stamp_ns[row - 1]) {
+        again += 1;
+        same += usize::from(repeats(row));
     }
-    let count = repeats.iter().filter(|repeats| **repeats).count();
-    if count < FEWEST || (count as f64) < WRITTEN_TWICE * all as f64 {
-        return vec![false; stamp_ns.len()];
-    }
-    repeats
+    same >= FEWEST && same as f64 >= WRITTEN_TWICE * again as f64
 }
 
 /// Whether the newest row comes first, as databases are asked for them: nearly every row is earlier than the one before.
@@ -116,14 +97,13 @@ mod tests {
     #[test]
     fn rows_that_were_written_twice_count_once_and_those_of_a_coarse_clock_all() {
         let read = |rows: &dyn Fn(usize) -> (i64, f64)| {
-            let (mut stamps, values): (Vec<i64>, Vec<f64>) = (0..200).map(rows).unzip();
-            let mut columns = BTreeMap::from([(0, Column::of(values))]);
-            let mut remarks = Remarks::default();
-            put(&mut stamps, &mut columns, false, &mut remarks);
-            (stamps.len(), columns[&0].values.len(), remarks.as_slice().len())
+            let (stamps, values): (Vec<i64>, Vec<f64>) = (0..200).map(rows).unzip();
+            let repeats = |row: usize| values[row].to_bits() == values[row - 1].to_bits();
+            kept(&stamps, &repeats, false, &mut Remarks::default()).map(|rows| rows.len())
         };
-        assert_eq!(read(&|row| ((row as i64 / 2) * 20, (row / 2) as f64)), (100, 100, 1));
-        assert_eq!(read(&|row| ((row as i64 / 2) * 20, row as f64)), (200, 200, 0));
-        assert_eq!(read(&|row| (row as i64 * 20, 1.0)), (200, 200, 0));
+        assert_eq!(read(&|row| ((row as i64 / 2) * 20, (row / 2) as f64)), Some(100));
+        assert_eq!(read(&|row| ((row as i64 / 2) * 20, row as f64)), None);
+        assert_eq!(read(&|row| (row as i64 * 20, 1.0)), None);
+        assert_eq!(read(&|row| (-20 * row as i64, 1.0)), Some(200), "backwards");
     }
 }

@@ -231,6 +231,31 @@ mod tests {
     }
 
     #[test]
+    fn a_plan_that_is_held_for_long_is_what_its_joint_followed() {
+        let step = |t_s: f64, from_s: f64| ((t_s - from_s) / 3.0).clamp(0.0, 1.0);
+        let sent = |t_s: f64| 0.3 * (step(t_s, 2.2) - step(t_s, 8.1) + step(t_s, 14.3));
+        let held = |t_s: f64| sent((2.0 * t_s + 1e-9).floor() / 2.0);
+        let track = |of: &dyn Fn(f64) -> f64| {
+            let t_s: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.01).collect();
+            Track::new("a", t_s.clone(), t_s.iter().map(|t_s| of(*t_s)).collect(), &[]).unwrap()
+        };
+        let read = |follows: &dyn Fn(f64) -> f64| {
+            let (mut planned, mut measured) =
+                (Series { tracks: vec![track(&held)] }, Series { tracks: vec![track(follows)] });
+            of_sides(
+                &mut [("planned", &mut planned), ("measured", &mut measured)],
+                false,
+                &mut Remarks::default(),
+            );
+            let off = |t_s: f64| (planned.tracks[0].held_at(t_s).position - sent(t_s)).abs();
+            (0..1900).map(|k| off(f64::from(k) * 0.01)).fold(0.0, f64::max)
+        };
+        let (followed, stepped) = (read(&|t_s| sent(t_s - 0.3)), read(&|t_s| held(t_s - 0.3)));
+        assert!(followed < 0.02, "{followed} rad");
+        assert!(stepped > 0.04, "a joint that steps was asked for steps: {stepped} rad");
+    }
+
+    #[test]
     fn a_slow_sensor_is_read_when_it_has_a_value_and_an_encoder_of_few_steps_always() {
         assert_eq!(kept(|k| 0.1 * (k / 10) as f64, 1e-9), 200);
         let uneven = kept(|k| 0.095 * (k as f64 * 0.01 / 0.095).floor(), 1e-9);

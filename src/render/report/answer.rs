@@ -4,7 +4,7 @@ use super::{
     method::method,
     resting::at_rest,
     steps::{LEARNT, named, replanned, told, without, words},
-    tables::{self, stray, verdicts},
+    tables::{self, saturates, stray, verdicts},
     together::Together,
     tool, why,
 };
@@ -121,9 +121,11 @@ fn astray(report: &Report) -> Option<Fact> {
     let said =
         |joint: &JointReplay| if joint.plan_moves == joint.moves { None } else { stray(report, joint) };
     let astray = replay.joints.iter().filter_map(said);
-    let others = replay.joints.iter().filter(|joint| said(joint).is_none());
+    let saturated = report.saturated();
+    let slow = |joint: &JointReplay| saturated.iter().any(|one| one.joint == joint.name);
+    let others = replay.joints.iter().filter(|joint| said(joint).is_none() && !slow(joint));
     let resting = others.flat_map(|joint| at_rest(replay, joint));
-    let found: Vec<String> = astray.chain(resting).collect();
+    let found: Vec<String> = astray.chain(saturated.iter().map(saturates)).chain(resting).collect();
     let more = match found.len() {
         0 | 1 => String::new(),
         all => format!(" And {} more.", counted(all - 1, "such joint")),

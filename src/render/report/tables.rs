@@ -16,9 +16,10 @@ use crate::{
         source::{clock, measured, planned},
     },
     replay::{
-        Answer, JOINT, JointReplay, ONSET_DELAY_LIMIT, Profiles, Replay, Swing, TRANSITION, Transition,
+        Answer, Dimension, JOINT, JointReplay, ONSET_DELAY_LIMIT, Profiles, Replay, Swing, TRANSITION,
+        Transition,
     },
-    workflow::report::{Backward, Fault, GateResult, Report, Travel},
+    workflow::report::{Backward, Fault, GateResult, Report, Saturated, Travel},
 };
 
 /// Everything a person reads of a report; `most` is how many transitions to list.
@@ -92,7 +93,11 @@ fn findings(report: &Report) -> Vec<String> {
     lines.extend(replay.joints.iter().filter_map(|joint| stray(report, joint)));
     lines.extend(replay.joints.iter().filter_map(|joint| one_way(replay, joint)));
     lines.extend(report.backward().iter().map(sinks));
-    lines.extend(replay.joints.iter().flat_map(|joint| at_rest(replay, joint)));
+    let saturated = report.saturated();
+    lines.extend(saturated.iter().map(saturates));
+    // What comes to its end later is off until then.
+    let others = replay.joints.iter().filter(|joint| !saturated.iter().any(|one| one.joint == joint.name));
+    lines.extend(others.flat_map(|joint| at_rest(replay, joint)));
     lines.extend(swings(report));
     lines
 }
@@ -104,6 +109,20 @@ fn sinks(Backward { joint, kind, count: [count, starts], most, at_s }: &Backward
          dead band: the load sinks before it is held (counterbalance or load-holding valve, leak, trapped pressure).",
         counted(*starts, "timed start"),
         position(*kind, *most)
+    )
+}
+
+/// A joint that goes no faster.
+pub(super) fn saturates(
+    Saturated { joint, kind, speed, asked, count: [count, motions] }: &Saturated,
+) -> String {
+    let shown = |speed: f64| with_unit(Dimension::Speed, *kind, speed);
+    format!(
+        "{joint} goes no faster than {}, where its plan asks for {} (at that speed in {count} of {} that ask for more): a limit of valve, pump or \
+         drive, and neither lag nor dead band. A plan within it is what helps.",
+        shown(*speed),
+        shown(*asked),
+        counted(*motions, "motion")
     )
 }
 

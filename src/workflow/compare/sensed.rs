@@ -44,7 +44,11 @@ pub(super) fn sensed_alike(joints: &[String], sides: [&[Report]; 2], remarks: &m
         let what = if counts && apart(before.noise, after.noise) {
             let more = before.noise.max(after.noise) / before.noise.min(after.noise);
             let side = if after.noise > before.noise { "after" } else { "before" };
-            format!("noise or step of the measurement is {more:.1} times as large {side}")
+            if more.is_finite() {
+                format!("noise or step of the measurement is {more:.1} times as large {side}")
+            } else {
+                format!("the measurement has noise or a step {side}, and on the other side none at all")
+            }
         } else if apart(before.interval_s, after.interval_s) {
             let [before_hz, after_hz] = [before, after].map(|side| 1.0 / side.interval_s);
             format!("sampled at {before_hz:.0} Hz before and at {after_hz:.0} Hz after")

@@ -11,6 +11,7 @@ mod gates;
 mod identity;
 mod outcome;
 mod plan_id;
+mod saturated;
 mod tool;
 mod why;
 
@@ -30,6 +31,7 @@ pub use gates::{GateResult, Gates};
 pub(crate) use identity::hash;
 pub use identity::{LogFile, log_files};
 pub use outcome::{Alignment, Fault, Report, Travel};
+pub use saturated::Saturated;
 pub use tool::Tool;
 pub use why::{DelayModel, LateStart, Part, Why};
 use why::{Ready, Unready};

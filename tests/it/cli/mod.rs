@@ -20,6 +20,7 @@ mod historians;
 mod hostile;
 mod join;
 mod join_share;
+mod join_units;
 mod layout;
 #[cfg(unix)]
 mod next_run;
