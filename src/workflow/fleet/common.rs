@@ -1,9 +1,11 @@
 //! What the machines of a fleet do alike over the days, with the season, the oil and the work, which is no change of one of them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+
+use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
 use super::{history::By, leveled::Leveled};
-use crate::math::{column_levels, row_weights, step_scatter, whole};
+use crate::math::{column_levels, mean, median, whole};
 
 /// Machines that tell it, at least, at any time.
 const FEWEST_MACHINES: usize = 4;
@@ -11,6 +13,10 @@ const FEWEST_MACHINES: usize = 4;
 const MANY: usize = 10;
 /// Largest share of what is common that one machine tells, however quiet it is.
 const MOST_SHARE: f64 = 0.3;
+/// A machine nearer to the others than by this share of the usual mean square says no more than one just so near.
+const LEAST_OFF: f64 = 0.04;
+/// What machines that share nothing would do alike more often is nothing.
+const CHANCE: f64 = 0.01;
 /// Days are told apart by so many at most.
 const MOST_BINS: usize = 200;
 /// Share of the instants of a joint at which it must be known.
@@ -29,7 +35,7 @@ fn shared(metric: By, level: f64, usual: f64) -> f64 {
 }
 
 impl Common {
-    /// Of what these joints did; `None` where too few machines tell.
+    /// Of what these joints did: nothing where they agree no more than by chance. `None` where too few machines tell.
     fn of(metric: By, joints: &[&Leveled]) -> Option<Self> {
         let joints: Vec<&&Leveled> = joints.iter().filter(|joint| joint.usual > 0.0).collect();
         let days = || joints.iter().flat_map(|joint| &joint.levels).map(|level| level.0);
@@ -37,22 +43,20 @@ impl Common {
         let bins = (1..MOST_BINS).find(|bins| *bins as f64 > to_days - from_days).unwrap_or(MOST_BINS);
         let step_days = (to_days - from_days) / bins as f64;
         let at = |bin: usize| from_days + (bin as f64 + 0.5) * step_days;
-        let row = |joint: &&&Leveled| -> Vec<f64> {
+        let mut machines: BTreeMap<&str, Vec<Vec<f64>>> = BTreeMap::new();
+        for joint in &joints {
             let value =
                 |bin| interpolated(&joint.levels, at(bin)).map(|level| shared(metric, level, joint.usual));
-            (0..bins).map(|bin| value(bin).unwrap_or(f64::NAN)).collect()
-        };
-        let rows: Vec<Vec<f64>> = joints.iter().map(row).collect();
-        let scatter = |joint: &&&Leveled| {
-            step_scatter(joint.levels.iter().map(|level| shared(metric, level.1, joint.usual)))
-        };
-        let mut weights = row_weights(&joints.iter().map(scatter).collect::<Vec<_>>());
-        bound(&mut weights, &joints.iter().map(|joint| joint.machine.as_str()).collect::<Vec<_>>());
-        let mut levels = column_levels(&rows, &weights, bins);
+            let row = (0..bins).map(|bin| value(bin).unwrap_or(f64::NAN)).collect();
+            machines.entry(&joint.machine).or_default().push(row);
+        }
+        // One machine is one witness, however many joints it has and however quiet they are.
+        let course = |own: &Vec<Vec<f64>>| column_levels(own, &vec![1.0; own.len()], bins);
+        let courses: Vec<Vec<f64>> = machines.values().map(course).collect();
+        let runs = median(joints.iter().map(|joint| joint.levels.len() as f64).collect());
+        let mut levels = agreed(&courses, runs, bins);
         for (bin, level) in levels.iter_mut().enumerate() {
-            let known = joints.iter().zip(&rows).filter(|(_, row)| row[bin].is_finite());
-            let machines: BTreeSet<&str> = known.map(|(joint, _)| joint.machine.as_str()).collect();
-            if machines.len() < FEWEST_MACHINES {
+            if courses.iter().filter(|own| own[bin].is_finite()).count() < FEWEST_MACHINES {
                 *level = f64::NAN;
             }
         }
@@ -115,18 +119,61 @@ impl Commons {
     }
 }
 
-/// Lessens the weights of joints of machines that tell more than [`MOST_SHARE`] of all.
-fn bound(weights: &mut [f64], machines: &[&str]) {
-    const SWEEPS: usize = 30;
-    let names: BTreeSet<&str> = machines.iter().copied().collect();
-    for machine in names.iter().cycle().take(SWEEPS * names.len()) {
-        let own = || machines.iter().map(|of| of == machine);
-        let sum =
-            |is: bool| weights.iter().zip(own()).filter(|(_, own)| *own == is).map(|(w, _)| w).sum::<f64>();
-        let by = MOST_SHARE / (1.0 - MOST_SHARE) * sum(false) / sum(true);
-        if by < 1.0 {
-            weights.iter_mut().zip(own()).filter(|(_, own)| *own).for_each(|(weight, _)| *weight *= by);
+/// What some machines do alike: at any time the middle, in which a machine that goes its own way counts for little. Nothing where those
+/// that agree best agree no more than by chance.
+fn agreed(courses: &[Vec<f64>], runs: f64, bins: usize) -> Vec<f64> {
+    const SWEEPS: usize = 5;
+    let mut weights = vec![1.0; courses.len()];
+    let (mut levels, mut off) = (Vec::new(), Vec::new());
+    for _ in 0..SWEEPS {
+        bound(&mut weights);
+        levels = column_levels(courses, &weights, bins);
+        let square = |own: &Vec<f64>| {
+            let off = own.iter().zip(&levels).map(|(own, level)| own - level).filter(|off| off.is_finite());
+            let off: Vec<f64> = off.collect();
+            let middle = mean(&off);
+            mean(&off.iter().map(|off| (off - middle).powi(2)).collect::<Vec<f64>>())
+        };
+        off = courses.iter().map(square).map(|off| if off.is_finite() { off } else { f64::MAX }).collect();
+        let least = (LEAST_OFF * median(off.clone())).max(f64::MIN_POSITIVE.sqrt());
+        weights = off.iter().map(|off| 1.0 / off.max(least)).collect();
+    }
+    // One machine that went its own way makes no agreement.
+    let alone = (0..off.len()).max_by(|a, b| off[*a].total_cmp(&off[*b]));
+    let others = courses.iter().enumerate().filter(|(k, _)| Some(*k) != alone).map(|(_, own)| own);
+    if p_of_chance(&others.collect::<Vec<_>>(), runs, bins) > CHANCE { vec![0.0; bins] } else { levels }
+}
+
+/// Probability that machines which share nothing agree as well as these: that of Fisher's F, of the instants against what is left of
+/// machines and instants. Between its runs a machine tells nothing new.
+fn p_of_chance(courses: &[&Vec<f64>], runs: f64, bins: usize) -> f64 {
+    let centred = |own: &&Vec<f64>| -> Vec<f64> {
+        let middle = mean(&own.iter().copied().filter(|level| level.is_finite()).collect::<Vec<f64>>());
+        own.iter().map(|level| level - middle).collect()
+    };
+    let courses: Vec<Vec<f64>> = courses.iter().map(centred).collect();
+    let (mut between, mut left, mut told) = (0.0, 0.0, 0.0_f64);
+    for bin in 0..bins {
+        let known: Vec<f64> = courses.iter().map(|own| own[bin]).filter(|level| level.is_finite()).collect();
+        if known.len() + 1 >= FEWEST_MACHINES {
+            let middle = mean(&known);
+            between += known.len() as f64 * middle * middle;
+            left += known.iter().map(|level| (level - middle).powi(2)).sum::<f64>();
+            told += 1.0;
         }
+    }
+    let freedom = told.min(runs) - 1.0;
+    let machines = courses.len() as f64 - 1.0;
+    let ratio = between * machines / left.max(f64::MIN_POSITIVE);
+    FisherSnedecor::new(freedom, freedom * machines).map_or(1.0, |f| f.sf(ratio))
+}
+
+/// Lessens weights that are more than [`MOST_SHARE`] of all.
+fn bound(weights: &mut [f64]) {
+    const SWEEPS: usize = 30;
+    for at in (0..weights.len()).cycle().take(SWEEPS * weights.len()) {
+        let others = weights.iter().sum::<f64>() - weights[at];
+        weights[at] = weights[at].min(MOST_SHARE / (1.0 - MOST_SHARE) * others);
     }
 }
 
@@ -182,5 +229,23 @@ mod tests {
         joints[5] = joint(5, rises);
         let common = Commons::of(&joints).at(&joints[0]).unwrap();
         assert!(common.iter().all(|level| level.abs() < 0.15), "{common:?}");
+    }
+
+    #[test]
+    fn one_machine_that_drifts_is_nothing_that_all_do_and_a_season_beside_it_is() {
+        let noise = |machine: u32, t: f64| 0.1 * (f64::from(machine) * 7.0 + t * t).sin();
+        let drift = |machine: u32, t: f64| if machine == 3 { 0.02 * t } else { 0.0 };
+        let season = |t: f64| 0.5 * (t / 20.0).sin();
+        let of = |with: f64| -> Vec<Leveled> {
+            let own = |machine: u32, t: f64| noise(machine, t) + drift(machine, t) + with * season(t);
+            (0..5).map(|machine| joint(machine, |t| f64::from(machine + 1) * own(machine, t))).collect()
+        };
+        let joints = of(0.0);
+        let common = Commons::of(&joints).at(&joints[0]).unwrap();
+        assert!(common.iter().all(|level| level.abs() < 1e-12), "{common:?}");
+        let joints = of(1.0);
+        let common = Commons::of(&joints).at(&joints[0]).unwrap();
+        let off = |k: usize| common[k] - season(joints[0].levels[k].0);
+        assert!((2..28).all(|k| (off(k) - off(15)).abs() < 0.2), "{common:?}");
     }
 }

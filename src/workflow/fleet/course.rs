@@ -46,6 +46,16 @@ pub(super) struct Course {
     pub(super) line: Vec<[f64; 2]>,
 }
 
+impl Course {
+    /// The same of levels that lie above these.
+    pub(super) fn above(mut self, by: f64) -> Self {
+        for point in &mut self.line {
+            point[1] += by;
+        }
+        self
+    }
+}
+
 /// The course of the levels of runs `(days, level)`; `None` where it is one level or one line.
 pub(super) fn course(levels: &[(f64, f64)]) -> Option<Course> {
     let found = pieces(levels).filter(|found| found.pieces.len() > 1 && found.p_of_line < NO_LINE)?;

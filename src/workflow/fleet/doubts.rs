@@ -125,13 +125,16 @@ fn otherwise(first: &Run, count: usize, remarks: &mut Remarks) {
     remarks.add(Code::MeasuredOtherwise, count as u64, message);
 }
 
+/// A name without case and separators.
+pub(super) fn plain(name: &str) -> String {
+    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
 /// Machines whose names differ in case or separators alone are called one by people.
 pub(super) fn spelled(runs: &[Run], remarks: &mut Remarks) {
     let mut spellings: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
     for run in runs {
-        let plain =
-            run.machine.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
-        spellings.entry(plain).or_default().insert(&run.machine);
+        spellings.entry(plain(&run.machine)).or_default().insert(&run.machine);
     }
     let twice = spellings.values().filter(|names| names.len() > 1);
     for names in twice {

@@ -4,8 +4,14 @@
 //! interval are of one level a run: that which is left when each start's own level is taken off. The slope is the median
 //! over the starts of each start's Theil-Sen slope. A start that scatters from run to run, because the joint had not come to
 //! rest before it, say, weighs less. The starts of each direction are judged by themselves, too.
+//!
+//! A new plan has other starts, so the levels before it and from it on are told apart by what four other machines or more did that ran
+//! both plans. Where fewer did, only what lies before or after it is judged, and a remark says so.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -13,13 +19,18 @@ use super::{
     common::Commons,
     failure::FleetFailure,
     found::judge,
-    history::{By, Filter, History, Scatters, Values},
+    history::{Axis, By, Filter, History, Scatters, Values},
     joint_trend::{FEWEST_RUNS, JointTrend, MOST_FALSE},
     leveled::Leveled,
+    link::links,
     map::{Map, maps},
     one_way::{by_direction, clearest},
+    run::date,
 };
-use crate::{document::PROGRAM, remark::Remarks};
+use crate::{
+    document::PROGRAM,
+    remark::{Code, Remarks},
+};
 
 /// What the format is called.
 const FORMAT: &str = "hydrotrace.fleet-drift.v1";
@@ -58,50 +69,18 @@ pub struct Drift {
 ///
 /// [`FleetFailure`] if there is no dataset, or no such machine in it.
 pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFailure> {
-    let history = History::read(root, filter, true)?;
+    // What is found does not depend on what is shown of it.
+    let mut history = History::read(root, &Filter { joint: None, ..filter.clone() }, true)?;
+    history.check_joint(filter)?;
     let wanted = |machine: &str| filter.machine.as_ref().is_none_or(|own| own == machine);
-    let scatters: BTreeMap<By, Scatters> = by.iter().map(|by| (*by, history.scatters(*by))).collect();
-    let none = Scatters::new();
-    let mut joints = Vec::new();
-    let mut too_few = 0;
-    for ((axis, metric), values) in &history.values {
-        if !by.contains(metric) {
-            continue;
-        }
-        let scatters = (axis.joint.as_str(), scatters.get(metric).unwrap_or(&none));
-        let leveled = |values: &Values, direction| {
-            let found = Leveled::of(*metric, &history.runs, values, scatters)?;
-            let unit = if *metric == By::Peak { axis.unit.clone() } else { "s".to_owned() };
-            Some(Leveled {
-                machine: axis.machine.clone(),
-                joint: axis.joint.clone(),
-                direction,
-                unit,
-                ..found
-            })
-        };
-        let Some(found) = leveled(values, None) else {
-            too_few += usize::from(wanted(&axis.machine));
-            continue;
-        };
-        joints.push(found);
-        for (direction, own) in by_direction(&history, axis, values) {
-            joints.extend(leveled(&own, Some(direction)));
-        }
-    }
-    let commons = Commons::of(&joints);
-    let mut trends: Vec<JointTrend> = joints
-        .into_iter()
-        .filter_map(|joint| {
-            let common = commons.at(&joint);
-            let shared_per_day = common.as_ref().and_then(|common| joint.shared_per_day(common));
-            Some(JointTrend { shared_per_day, ..joint.less(common).trend()? })
-        })
-        .collect();
-    judge(&mut trends);
+    let shown = |joint: &str| filter.joint.as_ref().is_none_or(|own| own == joint);
+    let (trends, few) = judged(&history, by);
+    let too_few = few.iter().filter(|axis| wanted(&axis.machine) && shown(&axis.joint)).count();
     let fewest_runs = fewest_runs(trends.len());
     let mut trends = clearest(trends);
-    trends.retain(|trend| wanted(&trend.machine));
+    trends.retain(|trend| wanted(&trend.machine) && shown(&trend.joint));
+    history.values.retain(|(axis, _), _| shown(&axis.joint));
+    untold(&trends, &mut history.remarks);
     trends.sort_by(|a, b| {
         let out = |trend: &JointTrend| trend.stands_out.unwrap_or(0.0);
         let by_size = out(b).total_cmp(&out(a));
@@ -124,6 +103,69 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
     })
 }
 
+/// The trends of all joints by these metrics, those of each direction of starts, too, judged; and the joints with too few runs, by metric.
+fn judged<'a>(history: &'a History, by: &[By]) -> (Vec<JointTrend>, Vec<&'a Axis>) {
+    let scatters: BTreeMap<By, Scatters> = by.iter().map(|by| (*by, history.scatters(*by))).collect();
+    let none = Scatters::new();
+    let mut joints = Vec::new();
+    let mut too_few = Vec::new();
+    for ((axis, metric), values) in &history.values {
+        if !by.contains(metric) {
+            continue;
+        }
+        let scatters = (axis.joint.as_str(), scatters.get(metric).unwrap_or(&none));
+        let leveled = |values: &Values, direction| {
+            let found = Leveled::of(*metric, &history.runs, values, scatters)?;
+            let unit = if *metric == By::Peak { axis.unit.clone() } else { "s".to_owned() };
+            Some(Leveled {
+                machine: axis.machine.clone(),
+                joint: axis.joint.clone(),
+                direction,
+                unit,
+                ..found
+            })
+        };
+        let Some(found) = leveled(values, None) else {
+            too_few.push(axis);
+            continue;
+        };
+        joints.push(found);
+        for (direction, own) in by_direction(history, axis, values) {
+            joints.extend(leveled(&own, Some(direction)));
+        }
+    }
+    let links = links(&joints);
+    let joints: Vec<Leveled> =
+        joints.into_iter().zip(links).map(|(joint, link)| joint.linked(link)).collect();
+    let commons = Commons::of(&joints);
+    let mut trends: Vec<JointTrend> = joints
+        .into_iter()
+        .filter_map(|joint| {
+            let common = commons.at(&joint);
+            let shared_per_day = common.as_ref().and_then(|common| joint.shared_per_day(common));
+            Some(JointTrend { shared_per_day, ..joint.less(common).trend()? })
+        })
+        .collect();
+    judge(&mut trends);
+    (trends, too_few)
+}
+
+/// Says which joints have another plan from a day on, so that nothing tells what they did on that very day.
+fn untold(trends: &[JointTrend], remarks: &mut Remarks) {
+    let split = || trends.iter().filter(|trend| !trend.untold.is_empty());
+    let joints: BTreeSet<(&str, &str)> = split().map(|trend| (&*trend.machine, &*trend.joint)).collect();
+    let Some(first) = split().min_by(|a, b| a.untold[0].total_cmp(&b.untold[0])) else { return };
+    let day = date(first.untold[0]).unwrap_or_default();
+    let message = format!(
+        "joints whose plan changed, as of {} {} on {}: whether a joint changed on that very day cannot be told, for no start is in both \
+         plans, and fewer than four other machines ran both",
+        first.machine,
+        first.joint,
+        day.get(..10).unwrap_or_default()
+    );
+    remarks.add(Code::OtherPlan, joints.len() as u64, message);
+}
+
 /// Runs that make a trend sure among so many, each of which is tested as a step, too: in order by chance are two of all orders.
 fn fewest_runs(trends: usize) -> usize {
     let by_chance = |runs: usize| 2.0 / (1..=runs).map(|k| k as f64).product::<f64>();
@@ -135,6 +177,9 @@ fn fewest_runs(trends: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
+
+    use rand_chacha::rand_core::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
 
     use super::{
         super::{history::Event, run::Run},
@@ -229,5 +274,97 @@ mod tests {
         let mut drifts = vec![joint_trend(By::Delay, &runs, &values, ("boom", &Scatters::new())).unwrap()];
         judge(&mut drifts);
         assert!(drifts[0].q_value < 0.01 && !drifts[0].found, "of no concern: {drifts:?}");
+    }
+
+    /// Machines with two joints that run once a day, each start with its own level; `of`: the dead time beside that by machine, day and joint
+    /// and the plan of the day, s.
+    fn fleet(seed: u64, machines: u32, of: impl Fn(u32, u32, usize) -> (f64, &'static str)) -> History {
+        let mut history = History::default();
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        let mut noise = |sd: f64| -> f64 { sd * Distribution::<f64>::sample(&StandardNormal, &mut rng) };
+        for (day, machine) in (0..14).flat_map(|day| (0..machines).map(move |machine| (day, machine))) {
+            let run = history.runs.len();
+            let started_us = i64::from(20_000 + day) * 86_400_000_000 + i64::from(machine) * 3_600_000_000;
+            let (id, name) = (run.to_string(), format!("M{machine}"));
+            history.runs.push(Run { log: id.clone(), id, machine: name.clone(), started_us });
+            for (joint, of_joint) in ["boom", "stick"].into_iter().zip(0..) {
+                let (more, plan) = of(machine, day, of_joint);
+                let axis = Axis { machine: name.clone(), joint: joint.into(), unit: "rad".into() };
+                let values = history.values.entry((axis, By::Delay)).or_default();
+                let of_run = noise(0.01);
+                for index in 0..4_i32 {
+                    // Another plan has other starts.
+                    let own = 0.2 + 0.02 * f64::from(index) + if plan == "p" { 0.0 } else { 0.07 };
+                    let event = Event { plan_id: plan.into(), index: index.into() };
+                    values.entry(event).or_default().insert(run, own + more + of_run + noise(0.015));
+                }
+            }
+        }
+        history
+    }
+
+    fn found(history: &History) -> Vec<JointTrend> {
+        clearest(judged(history, &[By::Delay]).0).into_iter().filter(|trend| trend.found).collect()
+    }
+
+    fn plan(is_new: bool) -> &'static str {
+        if is_new { "q" } else { "p" }
+    }
+
+    #[test]
+    fn a_new_plan_is_no_change_of_the_machines_that_run_it() {
+        let all = |_: u32, day: u32, _: usize| (0.0, plan(day >= 7));
+        let one = |machine: u32, day: u32, _: usize| (0.0, plan(machine == 1 && day >= 7));
+        let each = |machine: u32, day: u32, _: usize| (0.0, plan(day >= 5 + machine));
+        let fleets = |of: &dyn Fn(u32, u32, usize) -> (f64, &'static str)| {
+            (0..10).filter(|seed| !found(&fleet(*seed, 5, of)).is_empty()).count()
+        };
+        let with_finds = [fleets(&all), fleets(&one), fleets(&each)];
+        assert!(with_finds.iter().sum::<usize>() <= 2, "of ten fleets each: {with_finds:?}");
+    }
+
+    #[test]
+    fn a_step_on_the_day_of_a_new_plan_is_told_by_four_others_and_else_said_to_be_unknown() {
+        let of = |all: bool| {
+            move |machine: u32, day: u32, joint: usize| {
+                let more = if (machine, joint) == (1, 0) && day >= 7 { 0.15 } else { 0.0 };
+                (more, plan(day >= 7 && (all || machine == 1)))
+            }
+        };
+        for seed in 0..5 {
+            let found = found(&fleet(seed, 5, of(true)));
+            let [step] = found.as_slice() else { panic!("{found:?}") };
+            assert!(
+                (step.machine.as_str(), step.joint.as_str(), step.is_step) == ("M1", "boom", true),
+                "{step:?}"
+            );
+            assert!(step.step.as_ref().is_some_and(|step| (step.change - 0.15).abs() < 0.04), "{step:?}");
+            assert!(step.untold.is_empty());
+            let trends = clearest(judged(&fleet(seed, 5, of(false)), &[By::Delay]).0);
+            let mut remarks = Remarks::default();
+            untold(&trends, &mut remarks);
+            assert_eq!(remarks.as_slice()[0].count, 2, "both joints of one machine: {remarks:?}");
+            assert!(remarks.as_slice()[0].message.contains("M1 boom on 2024-10-11"), "{remarks:?}");
+        }
+    }
+
+    #[test]
+    fn a_joint_that_drifts_makes_no_finding_of_others_and_is_found_beyond_a_new_plan() {
+        let drifts = |machine: u32, day: u32, joint: usize| {
+            if (machine, joint) == (1, 0) { 0.01 * f64::from(day) } else { 0.0 }
+        };
+        let mut others = 0;
+        for seed in 0..10 {
+            let same = found(&fleet(seed, 5, |machine, day, joint| (drifts(machine, day, joint), "p")));
+            let new =
+                found(&fleet(seed, 5, |machine, day, joint| (drifts(machine, day, joint), plan(day >= 7))));
+            for found in [same, new] {
+                let own =
+                    |trend: &&JointTrend| (trend.machine.as_str(), trend.joint.as_str()) == ("M1", "boom");
+                assert!(found.iter().any(|trend| own(&trend) && !trend.is_step), "{seed}: {found:?}");
+                others += found.iter().filter(|trend| !own(trend)).count();
+            }
+        }
+        assert!(others <= 2, "{others} of twenty fleets");
     }
 }

@@ -40,30 +40,39 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
     };
     let (q_step, q_course) = (q_of(p_step), q_of(p_course));
     let (q_step, q_course) = (&q_step[..], &q_course[..]);
+    // One of them found is a change found; which way it changed is told by its own levels, whatever else is asked for.
+    let q_least: Vec<f64> = (0..trends.len()).map(|k| q_trend[k].min(q_step[k]).min(q_course[k])).collect();
     let at_step = |own: &JointTrend| Some(own.levels.get(own.step.as_ref()?.runs_before)?.at_days);
     let steps = |(own, q): (&JointTrend, &f64)| {
         if *q < MOST_FALSE { elsewhere(trends, own, at_step(own)?) } else { None }
     };
-    let elsewhere: Vec<Option<(f64, f64)>> = trends.iter().zip(q_step).map(steps).collect();
-    let changes =
-        |(own, q): (&JointTrend, &f64)| if *q < MOST_FALSE { changes(trends, own) } else { Vec::new() };
-    let changes: Vec<Vec<Change>> = trends.iter().zip(q_course).map(changes).collect();
+    let elsewhere: Vec<Option<(f64, f64)>> = trends.iter().zip(&q_least).map(steps).collect();
+    let changes = |(own, q): (&JointTrend, &f64)| {
+        let is_course = *q < MOST_FALSE && p_course(own).is_some_and(|p| p < MOST_FALSE);
+        if is_course { changes(trends, own) } else { Vec::new() }
+    };
+    let changes: Vec<Vec<Change>> = trends.iter().zip(&q_least).map(changes).collect();
     for ((k, trend), changes) in trends.iter_mut().enumerate().zip(changes) {
         trend.q_value = q_trend[k];
         let usual = tell[k] && trend.stands_out.is_some_and(|out| out < STANDS_OUT);
         let least = RELEVANT * trend.level.abs();
-        let drifts = trend.q_value < MOST_FALSE
-            && !usual
-            && (trend.slope_per_day * trend.changing_days).abs() >= least;
+        let surely = q_least[k] < MOST_FALSE;
+        let one_way = trend.interval_95[0] * trend.interval_95[1] >= 0.0;
+        let by = (trend.slope_per_day * trend.changing_days).abs();
+        let drifts = surely && one_way && !usual && by >= least;
         if let Some(step) = &mut trend.step {
             step.q_value = q_step[k];
             let beyond = beyond(step.change, step.interval_95, least, elsewhere[k]);
-            let steps = step.q_value < MOST_FALSE && step.change.abs() >= least && beyond;
+            let steps = surely && step.change.abs() >= least && beyond;
             // What a drift explains nearly as well is one: its growth a day is the smaller claim.
             trend.is_step = steps && (!drifts || step.is_sure());
             if trend.is_step {
+                step.q_value = q_least[k];
                 trend.since.clone_from(&step.by);
             }
+        }
+        if drifts {
+            trend.q_value = q_least[k];
         }
         trend.found = drifts || trend.is_step;
         if let Some((last, course)) = changes.last().zip(trend.course.as_ref()) {
@@ -72,10 +81,10 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
             // What grew and then stayed changed within days.
             trend.is_step |= course.ends.0.abs() <= 0.0;
             if trend.is_step {
-                trend.step = Some(LevelStep::of(last, (course.p_value, q_course[k])));
+                trend.step = Some(LevelStep::of(last, (course.p_value, q_least[k])));
                 trend.since.clone_from(&last.by);
             } else {
-                trend.q_value = q_course[k];
+                trend.q_value = q_least[k];
                 trend.since.clone_from(&last.after);
             }
             trend.line.clone_from(&course.line);
@@ -329,5 +338,32 @@ mod tests {
         }
         judge(&mut trends);
         assert!(trends[0].found, "{:?}", trends[0].stands_out);
+    }
+
+    #[test]
+    fn what_is_judged_beside_it_makes_a_step_no_line() {
+        let noise = |k: u32| 0.3 * f64::from(k * 7 % 5) - 0.6;
+        let of = |level: &dyn Fn(u32) -> f64, beside: usize| {
+            let points: Vec<(f64, f64)> =
+                (0..12).map(|k| (f64::from(k), 3.0 + level(k) + noise(k))).collect();
+            let found = crate::math::trend(&points).unwrap();
+            let own = JointTrend {
+                slope_per_day: found.slope,
+                interval_95: found.interval,
+                p_value: found.p,
+                step: best_step(&points),
+                changing_days: 11.0,
+                level: 3.0,
+                ..JointTrend::default()
+            };
+            let mut trends = vec![JointTrend { p_value: 1.0, ..JointTrend::default() }; beside];
+            trends.push(own);
+            judge(&mut trends);
+            trends.pop().map(|trend| (trend.found, trend.is_step)).unwrap()
+        };
+        for beside in [0, 10, 100] {
+            assert_eq!(of(&|k| if k < 6 { 0.0 } else { 5.0 }, beside), (true, true), "{beside}");
+            assert_eq!(of(&|k| 0.6 * f64::from(k), beside), (true, false), "{beside}");
+        }
     }
 }

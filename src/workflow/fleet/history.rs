@@ -11,6 +11,7 @@ use super::{
     doubts,
     failure::FleetFailure,
     once::{Logged, is_gone, one_a_run},
+    renamed::as_one,
     run::Run,
     sources::changed_ns,
     store::{is_unfinished, parts},
@@ -76,6 +77,8 @@ pub(super) struct History {
     /// The direction of each start, 1 or -1.
     pub(super) directions: BTreeMap<(String, Event), i64>,
     pub(super) remarks: Remarks,
+    /// Names of all joints.
+    joints: BTreeSet<String>,
 }
 
 /// Which part of the dataset is asked for.
@@ -165,10 +168,9 @@ impl History {
         doubts::spelled(&history.runs, &mut history.remarks);
         let index: BTreeMap<String, usize> =
             history.runs.iter().enumerate().map(|(k, run)| (run.id.clone(), k)).collect();
-        if let Some(joint) = &filter.joint {
-            let fault = |joint, nearest, present| FleetFailure::NoJoint { joint, nearest, present };
-            check_name(joint, &joints.values().flatten().map(String::as_str).collect(), fault)?;
-        }
+        as_one(&history.runs, [&mut starts, &mut lags], &mut history.remarks);
+        history.joints = lags.iter().filter_map(|row| row[2].as_text().map(str::to_owned)).collect();
+        history.check_joint(filter)?;
         let joint =
             |row: &Vec<Cell>| filter.joint.as_ref().is_none_or(|joint| row[2].as_text() == Some(joint));
         starts.retain(joint);
@@ -217,6 +219,13 @@ impl History {
     fn check(&self, machine: &str) -> Result<(), FleetFailure> {
         let fault = |machine, nearest, present| FleetFailure::NoMachine { machine, nearest, present };
         check_name(machine, &self.machines(), fault)
+    }
+
+    /// That the joint that is asked for is one of those that are there.
+    pub(super) fn check_joint(&self, filter: &Filter) -> Result<(), FleetFailure> {
+        let fault = |joint, nearest, present| FleetFailure::NoJoint { joint, nearest, present };
+        let present = self.joints.iter().map(String::as_str).collect();
+        filter.joint.as_ref().map_or(Ok(()), |joint| check_name(joint, &present, fault))
     }
 
     fn take_starts(&mut self, rows: &[Vec<Cell>], index: &BTreeMap<String, usize>) {

@@ -69,6 +69,9 @@ pub struct JointTrend {
     /// What the level did, before it is judged.
     #[serde(skip)]
     pub(super) course: Option<Course>,
+    /// The first runs of other plans, days since 1970, where nothing tells whether the level changed with the plan.
+    #[serde(skip)]
+    pub(super) untold: Vec<f64>,
     /// The slope in robust standard deviations of the slopes of this metric in all joints; null where these are equal.
     pub stands_out: Option<f64>,
     /// When the level begins to change, UTC: of a step the first run after it, else the first run if it changes all the time.

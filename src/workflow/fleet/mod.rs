@@ -6,6 +6,7 @@
 //! give equal bytes.
 
 mod arrange;
+mod blocks;
 mod common;
 mod compact;
 mod course;
@@ -21,11 +22,13 @@ mod history;
 mod joint_trend;
 mod leveled;
 mod limits;
+mod link;
 mod machine;
 mod map;
 mod note;
 mod once;
 mod one_way;
+mod renamed;
 mod run;
 mod scan;
 mod sides;
@@ -33,8 +36,10 @@ mod sources;
 mod stepped;
 mod store;
 mod tables;
+mod trended;
 mod when;
 mod window;
+mod within;
 mod worst;
 
 pub use compact::{Compacted, compact};

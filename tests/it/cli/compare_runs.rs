@@ -73,7 +73,8 @@ fn the_joint_that_changed_is_named_though_the_others_did_not() {
     let folder = tempfile::tempdir().unwrap();
     let line = five(folder.path(), [[0.4, 0.1, 0.2], [0.2, 0.1, 0.2]]);
     let found = stdout(&run_line(folder.path(), &line));
-    let named = found.lines().find(|line| line.starts_with("By joint, where the interval clearly leaves out zero"));
+    let named =
+        found.lines().find(|line| line.starts_with("By joint, where the interval clearly leaves out zero"));
     let named = named.unwrap_or_else(|| panic!("{found}"));
     assert!(named.contains("peak error boom -") && named.contains("start delay boom -"), "{named}");
     assert!(!named.contains("stick") && !named.contains("swing"), "{named}");

@@ -9,9 +9,9 @@ use crate::support::{clean, fleet::log, json, run_line, stdout};
 const NAMES: [&str; 2] = ["boom", "stick"];
 const UNITS: &str = "--planned-degrees --measured-degrees --slides stick=mm";
 
-/// Numbers of both joints at instants, as the recorder has them: deg and mm.
+/// Numbers of both joints, by joint and instant, as the recorder has them: deg and mm.
 fn recorded(t_s: &[f64], of: impl Fn(f64) -> [f64; 2]) -> Vec<Vec<f64>> {
-    t_s.iter().map(|t_s| of(*t_s).to_vec()).collect()
+    (0..NAMES.len()).map(|joint| t_s.iter().map(|t_s| of(*t_s)[joint]).collect()).collect()
 }
 
 fn plan(t_s: f64) -> [f64; 2] {
@@ -25,9 +25,7 @@ fn a_recording_in_degrees_and_mm_is_read_in_one_unit_once_its_plan_is_in_it() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let t_s: Vec<f64> = (0..1150).map(|k| 0.02 * f64::from(k)).collect();
-    let late = |of: &dyn Fn(f64) -> [f64; 2]| {
-        [recorded(&t_s, of), recorded(&t_s, |t_s| of(t_s - 0.15))]
-    };
+    let late = |of: &dyn Fn(f64) -> [f64; 2]| [recorded(&t_s, of), recorded(&t_s, |t_s| of(t_s - 0.15))];
     let [planned, measured] = late(&plan);
     fs::write(at.join("run.mcap"), log("M1", 0, &NAMES, &t_s, [&planned, &measured])).unwrap();
     let lines = stdout(&run_line(at, &format!("replan run.mcap --keep-plan {UNITS} -o next.mcap")));
@@ -54,7 +52,8 @@ fn a_recording_in_degrees_and_mm_is_read_in_one_unit_once_its_plan_is_in_it() {
     let peaks = |line: &str| {
         let report = json(at, line);
         let largest = |joint: &str| {
-            let own = report["transitions"].as_array().unwrap().iter().filter(|start| start["joint"] == joint);
+            let own =
+                report["transitions"].as_array().unwrap().iter().filter(|start| start["joint"] == joint);
             own.map(|start| start["peak_error"].as_f64().unwrap()).fold(0.0, f64::max)
         };
         NAMES.map(largest)
