@@ -5,7 +5,6 @@ use super::{
     Trial,
     answer::Answer,
     correct::{Workspace, rms},
-    joint::CAP_RAD,
 };
 use crate::{
     math::{deviation, range},
@@ -16,6 +15,9 @@ use crate::{
 /// A joint whose error is more than this share of its motion does not follow its plan: what it does is no error to be
 /// corrected. Smaller errors than that of the lesser cap are.
 const FOLLOWS: f64 = 0.5;
+
+/// Largest correction of a plan that is off by little, rad.
+pub(super) const CAP_RAD: f64 = 1.5 * DEGREE_RAD;
 
 /// Share of the error of a slow joint that its model may leave.
 const EXPLAINED: f64 = 0.2;

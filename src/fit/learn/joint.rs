@@ -6,7 +6,7 @@ use super::{
     super::{FitError, JointFit, model::STEP_S},
     JointStep, Learning, Room, SHARE, Step, Trial,
     answer::Answer,
-    astray::is_astray,
+    astray::{CAP_RAD, is_astray},
     chance::{Chance, unlearnt},
     correct::{
         Aim, CALM_MODEL_HZ, Manner, NONE_RAD, Workspace, faded, first, inverted, largest, unexplained_rad,
@@ -28,9 +28,7 @@ use crate::{
 /// Part of these over which a wanted correction fades, s.
 const FADES_S: f64 = 0.5;
 
-/// Largest correction of a plan that is off by little, rad, and of others by what they are off by.
-pub(super) const CAP_RAD: f64 = 1.5 * DEGREE_RAD;
-
+/// Largest correction of a plan by what that is off by, where that is more than little.
 const CAP_BY_ERROR: f64 = 1.25;
 
 /// Frequency of what is left of a finished correction by half, Hz, and by that of what is learnt.

@@ -5,8 +5,8 @@ use super::sources;
 /// Lines of the longest file; of half the files of `src` at most; of `src` and of all Rust together.
 const LONGEST: usize = 400;
 const MEDIAN: usize = 125;
-const LIBRARY: usize = 107_300;
-const ALL: usize = 149_700;
+const LIBRARY: usize = 109_700;
+const ALL: usize = 152_400;
 
 const FOLDERS: [&str; 6] = ["src", "crates", "tests", "benches", "examples", "fuzz"];
 
