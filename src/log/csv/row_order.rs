@@ -96,14 +96,14 @@ mod tests {
 
     #[test]
     fn rows_that_were_written_twice_count_once_and_those_of_a_coarse_clock_all() {
-        let read = |rows: &dyn Fn(usize) -> (i64, f64)| {
+        let read = |rows: &dyn Fn(i32) -> (i64, f64)| {
             let (stamps, values): (Vec<i64>, Vec<f64>) = (0..200).map(rows).unzip();
             let repeats = |row: usize| values[row].to_bits() == values[row - 1].to_bits();
             kept(&stamps, &repeats, false, &mut Remarks::default()).map(|rows| rows.len())
         };
-        assert_eq!(read(&|row| ((row as i64 / 2) * 20, (row / 2) as f64)), Some(100));
-        assert_eq!(read(&|row| ((row as i64 / 2) * 20, row as f64)), None);
-        assert_eq!(read(&|row| (row as i64 * 20, 1.0)), None);
-        assert_eq!(read(&|row| (-20 * row as i64, 1.0)), Some(200), "backwards");
+        assert_eq!(read(&|row| (i64::from(row / 2) * 20, f64::from(row / 2))), Some(100));
+        assert_eq!(read(&|row| (i64::from(row / 2) * 20, f64::from(row))), None);
+        assert_eq!(read(&|row| (i64::from(row) * 20, 1.0)), None);
+        assert_eq!(read(&|row| (i64::from(row) * -20, 1.0)), Some(200), "backwards");
     }
 }

@@ -56,7 +56,7 @@ pub(super) fn phrase(start: &LateStart) -> String {
     parts.retain(|(part, _)| part.delay_s.abs() >= 0.0005);
     parts.sort_by(|a, b| b.0.delay_s.total_cmp(&a.0.delay_s));
     let word = |(part, name): &(Part, &str)| match part.interval_s {
-        Some([low_s, high_s]) if is_unsure(part) => {
+        Some([low_s, high_s]) if is_unsure(part) || is_wide(part) => {
             format!("{} ms {name} (95 %: {} to {})", ms(part.delay_s), ms(low_s), ms(high_s))
         }
         _ if part.delay_s > 0.0 => format!("{} ms {name}", ms(part.delay_s)),
@@ -86,6 +86,11 @@ pub(super) fn phrase(start: &LateStart) -> String {
 /// Whether a part may be none at all.
 fn is_unsure(part: &Part) -> bool {
     part.delay_s > 0.0 && part.interval_s.is_some_and(|[low_s, _]| low_s <= 0.0)
+}
+
+/// Whether a part is known no better than by itself.
+fn is_wide(part: &Part) -> bool {
+    part.delay_s > 0.0 && part.interval_s.is_some_and(|[low_s, high_s]| high_s - low_s > part.delay_s)
 }
 
 /// What explains a start, if something does.

@@ -32,6 +32,9 @@ type Renamed = BTreeMap<(String, String), String>;
 /// Each start of a plan by joint and number: its direction, and how long after the first one it lies, s.
 type Shape = BTreeMap<(String, i64), (i64, f64)>;
 
+/// The same of each run.
+type Told = BTreeMap<(String, i64), (i64, Vec<f64>)>;
+
 /// Takes the spellings of a joint within a machine as one, where no run has both, and the plans that name it so; and says so.
 pub(super) fn as_one(runs: &[Run], tables: [&mut Vec<Vec<Cell>>; 2], remarks: &mut Remarks) {
     let machines: BTreeMap<&str, &str> =
@@ -114,7 +117,7 @@ fn shapes(starts: &[Vec<Cell>]) -> BTreeMap<String, Shape> {
             first_s.entry(run).and_modify(|first_s| *first_s = first_s.min(at_s)).or_insert(at_s);
         }
     }
-    let mut all: BTreeMap<String, BTreeMap<(String, i64), (i64, Vec<f64>)>> = BTreeMap::new();
+    let mut all: BTreeMap<String, Told> = BTreeMap::new();
     for row in starts {
         let text = |k: usize| row[k].as_text();
         let told = row[INDEX].as_whole().zip(row[DIRECTION].as_whole()).zip(row[ONSET].as_real());
@@ -130,10 +133,11 @@ fn shapes(starts: &[Vec<Cell>]) -> BTreeMap<String, Shape> {
 
 /// Whether all starts of two plans are the same.
 fn alike(one: &Shape, other: &Shape) -> bool {
-    let same = |(a, b): ((&(String, i64), &(i64, f64)), (&(String, i64), &(i64, f64)))| {
-        a.0 == b.0 && a.1.0 == b.1.0 && (a.1.1 - b.1.1).abs() <= SAME_ONSET_S
-    };
-    one.len() == other.len() && one.iter().zip(other).all(same)
+    let starts = one.iter().zip(other);
+    let mut same = starts.map(|((a, (a_way, a_s)), (b, (b_way, b_s)))| {
+        a == b && a_way == b_way && (a_s - b_s).abs() <= SAME_ONSET_S
+    });
+    one.len() == other.len() && same.all(|same| same)
 }
 
 #[cfg(test)]

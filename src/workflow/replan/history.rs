@@ -157,8 +157,8 @@ impl History {
             others.iter().try_for_each(|other| newest.check(other))?;
         }
         for (k, run) in history.runs.iter_mut().enumerate() {
-            let others = peaks.iter().enumerate().filter(|(other, _)| *other != k).map(|(_, peaks)| peaks);
-            run.mean_peak_rad = peaks[k].usual_mean(others);
+            let others = peaks.iter().enumerate().filter(|(other, _)| *other != k);
+            run.mean_peak_rad = peaks[k].usual_mean(&others.map(|(_, peaks)| peaks).collect::<Vec<_>>());
         }
         // Only what all logs have can be compared.
         for (run, (_, measured)) in history.runs.iter_mut().zip(&mut history.series) {

@@ -24,7 +24,7 @@ impl Peaks {
     }
 
     /// Their mean, rad, one that stands alone as the next largest; `None` of none. `others` are of other runs of the plan.
-    pub(super) fn usual_mean<'a>(&self, others: impl Iterator<Item = &'a Self> + Clone) -> Option<f64> {
+    pub(super) fn usual_mean(&self, others: &[&Self]) -> Option<f64> {
         let (mut sum_rad, mut count) = (0.0, 0);
         for (joint, peaks) in &self.0 {
             sum_rad += peaks.iter().sum::<f64>();
@@ -41,7 +41,7 @@ impl Peaks {
             };
             let alone =
                 peaks.len() >= LEAST && most_rad > BEYOND * next_rad && most_rad - next_rad > BEYOND_RAD;
-            if alone && others.clone().next().is_some() && !others.clone().any(again) {
+            if alone && !others.is_empty() && !others.iter().any(|other| again(other)) {
                 sum_rad -= most_rad - next_rad;
             }
         }
@@ -59,7 +59,7 @@ mod tests {
             |of_deg: [f64; 4]| Peaks([("a".to_owned(), of_deg.map(|deg| deg * DEGREE_RAD).to_vec())].into());
         let mean_deg = |own: [f64; 4], others: &[[f64; 4]]| {
             let others: Vec<Peaks> = others.iter().map(|other| run(*other)).collect();
-            run(own).usual_mean(others.iter()).unwrap() / DEGREE_RAD
+            run(own).usual_mean(&others.iter().collect::<Vec<_>>()).unwrap() / DEGREE_RAD
         };
         let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
         assert!(near(mean_deg([0.1, 0.2, 8.0, 0.1], &[[1.0, 1.0, 1.0, 1.0]]), 0.15));

@@ -126,6 +126,8 @@ fn motion(pair: &Pair, speeds: &[f64], (start, end_s): (&Transition, f64), band:
 
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write as _;
+
     use super::*;
     use crate::workflow::report::{Inputs, run};
 
@@ -141,7 +143,7 @@ mod tests {
         for k in 0..4200 {
             let t_s = 0.01 * f64::from(k);
             came += (plan(t_s - 0.1) - came).clamp(-0.01 * fastest, 0.01 * fastest);
-            table += &format!("{t_s:.2},{:.5},{came:.5}\n", plan(t_s));
+            writeln!(table, "{t_s:.2},{:.5},{came:.5}", plan(t_s)).unwrap();
         }
         std::fs::write(&path, table).unwrap();
         run(&Inputs { logs: vec![path], ..Inputs::default() }).unwrap()
