@@ -88,9 +88,10 @@ fn is_unsure(part: &Part) -> bool {
     part.delay_s > 0.0 && part.interval_s.is_some_and(|[low_s, _]| low_s <= 0.0)
 }
 
-/// Whether a part is known no better than by itself.
+/// Whether a part is hardly known: its interval is wider than it is large by this factor.
 fn is_wide(part: &Part) -> bool {
-    part.delay_s > 0.0 && part.interval_s.is_some_and(|[low_s, high_s]| high_s - low_s > part.delay_s)
+    const WIDE: f64 = 1.25;
+    part.delay_s > 0.0 && part.interval_s.is_some_and(|[low_s, high_s]| high_s - low_s > WIDE * part.delay_s)
 }
 
 /// What explains a start, if something does.
@@ -217,5 +218,6 @@ mod tests {
         assert_eq!(said(part(-0.091, 0.05), none), "147 ms lag, less 91 ms dead band");
         let limit = Part { delay_s: -0.002, ..none };
         assert_eq!(said(part(0.2, 0.1), limit), "200 ms dead band, 147 ms lag, less 2 ms limits");
+        assert_eq!(said(part(0.2, 0.15), none), "200 ms dead band (95 %: 50 to 350), 147 ms lag");
     }
 }

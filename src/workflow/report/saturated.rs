@@ -117,11 +117,28 @@ fn motion(pair: &Pair, speeds: &[f64], (start, end_s): (&Transition, f64), band:
     };
     let asked = samples.clone().map(|k| along * planned(pair, k)).fold(0.0, f64::max);
     let at_limit_s = lasts_s(AS_FAST);
-    let held = asked > ASKS * fastest
+    // A plan that is drawn through few values has speeds of its own, but takes no longer for that.
+    let [own_s, planned_s] =
+        [&pair.measured, &pair.planned].map(|q| takes_s(&pair.t_s, q, samples.clone(), along));
+    let longer = own_s.zip(planned_s).is_some_and(|(own_s, planned_s)| own_s > ASKS * planned_s);
+    let held = longer
+        && asked > ASKS * fastest
         && fastest > 0.0
         && at_limit_s > LASTS_S
         && at_limit_s > SHARE * lasts_s(MOVES);
     Some(Motion { asked, fastest, held })
+}
+
+/// How long a motion takes for all but the first and the last tenth of its way, s.
+fn takes_s(t_s: &[f64], q: &[f64], samples: std::ops::Range<usize>, along: f64) -> Option<f64> {
+    let own = samples.clone().map(|k| along * q[k]);
+    let (low, high) =
+        own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let at = |share: f64| {
+        let place = low + share * (high - low);
+        samples.clone().find(|k| along * q[*k] >= place).map(|k| t_s[k])
+    };
+    Some(at(0.9)? - at(0.1)?)
 }
 
 #[cfg(test)]
