@@ -122,7 +122,7 @@ impl Kinds {
 
     /// Whether positions of a source are in degrees, where the caller says so of its side, or a join said it of its topic.
     pub(super) fn degrees(&self, source: usize, said: bool) -> bool {
-        self.in_degrees.contains(&source) || said && !self.written.contains(&source)
+        !self.written.contains(&source) && (said || self.in_degrees.contains(&source))
     }
 
     /// How a joint of a source moves.
