@@ -32,6 +32,14 @@ pub struct RecordedIn {
     pub lengths: BTreeMap<String, LengthUnit>,
 }
 
+impl RecordedIn {
+    /// With topics, joined by a comma, in degrees.
+    pub fn with_degrees(mut self, topics: &str) -> Self {
+        self.degrees.extend(topics.split(AND).filter(|topic| !topic.is_empty()).map(str::to_owned));
+        self
+    }
+}
+
 /// The entries for what was sent, whose topics and fields are joined by a comma, for the topics that were written, and for the units of
 /// the others.
 pub(super) fn entries(

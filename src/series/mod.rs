@@ -30,7 +30,7 @@ pub use locate::{Located, left_at, locate};
 pub use noise::{Noise, noise};
 pub(crate) use noise::{is_sensed, over_window, white};
 pub use pose::{PosePair, PoseSample};
-pub use rest::last_rest_ends_s;
+pub use rest::whole_until_s;
 pub(crate) use rounding::rounding;
 pub(crate) use signal::{Instants, all_finite};
 pub use signal::{JointKind, Quantity, Signal, SignalError};

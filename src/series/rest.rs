@@ -4,12 +4,12 @@
 const RESTS: f64 = 1e-3;
 const LASTS_S: f64 = 0.3;
 
-/// The end of the last rest of all plans, each as times, s, and positions, that begins between a motion and an instant, s; `None`
-/// where none does. Without a motion after it, it ends nowhere.
-pub fn last_rest_ends_s<'a>(
-    plans: impl Iterator<Item = (&'a [f64], &'a [f64])>,
-    before_s: f64,
-) -> Option<f64> {
+/// A part of a run ends so long before the motion that follows, s.
+const BEFORE_S: f64 = 0.1;
+
+/// Until when a run can be read whole before an instant, s: shortly before the end of the last rest of all plans, each as times, s, and
+/// positions, that begins between a motion and that instant. `None` where none does, or no motion follows.
+pub fn whole_until_s<'a>(plans: impl Iterator<Item = (&'a [f64], &'a [f64])>, before_s: f64) -> Option<f64> {
     let mut moving: Vec<[f64; 2]> = plans
         .flat_map(|(t_s, q)| t_s.windows(2).zip(q.windows(2)))
         .filter(|(t_s, q)| (q[1] - q[0]).abs() > RESTS * (t_s[1] - t_s[0]))
@@ -23,7 +23,7 @@ pub fn last_rest_ends_s<'a>(
         }
         since_s = to_s.max(since_s);
     }
-    ends_s
+    ends_s.filter(|ends_s| ends_s.is_finite()).map(|ends_s| ends_s - BEFORE_S)
 }
 
 #[cfg(test)]
@@ -37,11 +37,11 @@ mod tests {
         let first: Vec<f64> = t_s.iter().map(|t| step(*t, 1.0) + step(*t, 6.0)).collect();
         let second: Vec<f64> = t_s.iter().map(|t| step(*t, 1.5) - step(*t, 4.0)).collect();
         let plans = || [first.as_slice(), second.as_slice()].into_iter().map(|q| (t_s.as_slice(), q));
-        let found = |before_s: f64| last_rest_ends_s(plans(), before_s);
+        let found = |before_s: f64| whole_until_s(plans(), before_s);
         assert_eq!(found(2.2), None);
-        assert!(found(3.0).is_some_and(|s| (s - 4.0).abs() < 0.02), "{:?}", found(3.0));
-        assert!(found(4.5).is_some_and(|s| (s - 4.0).abs() < 0.02));
-        assert!(found(5.5).is_some_and(|s| (s - 6.0).abs() < 0.02));
-        assert_eq!(found(8.0), Some(f64::INFINITY));
+        assert!(found(3.0).is_some_and(|s| (s - 3.9).abs() < 0.02), "{:?}", found(3.0));
+        assert!(found(4.5).is_some_and(|s| (s - 3.9).abs() < 0.02));
+        assert!(found(5.5).is_some_and(|s| (s - 5.9).abs() < 0.02));
+        assert_eq!(found(8.0), None);
     }
 }

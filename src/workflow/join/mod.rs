@@ -286,15 +286,14 @@ pub fn run(inputs: &Inputs) -> Result<Joined, JoinFailure> {
 
 /// In what the topics of a run are, as the caller says.
 fn recorded_in(run: &Recording, read: &ReadOptions) -> RecordedIn {
-    let command = Topics::default().command;
-    let sides = [
-        (read.planned_in_degrees, &run.source.planned_topic),
-        (read.planned_in_degrees, &command),
-        (read.measured_in_degrees, &run.source.measured_topic),
-    ];
-    let degrees = sides.into_iter().filter(|(degrees, topics)| *degrees && !topics.is_empty());
-    let degrees = degrees.flat_map(|(_, topics)| topics.split(", ")).map(str::to_owned).collect();
-    RecordedIn { degrees, lengths: read.slides.clone() }
+    let mut recorded = RecordedIn { lengths: read.slides.clone(), ..RecordedIn::default() };
+    if read.planned_in_degrees {
+        recorded = recorded.with_degrees(&run.source.planned_topic).with_degrees(&Topics::default().command);
+    }
+    if read.measured_in_degrees {
+        recorded = recorded.with_degrees(&run.source.measured_topic);
+    }
+    recorded
 }
 
 /// How long the command rests before and after a plan, as far as is measured, s.

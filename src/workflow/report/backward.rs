@@ -2,7 +2,6 @@
 
 use super::outcome::Report;
 use crate::{
-    remark::Code,
     replay::{JointReplay, Kind, Transition},
     series::JointKind,
 };
@@ -29,8 +28,7 @@ pub struct Backward {
 impl Report {
     /// The joints that do so; none of a run that followed its plan at another time, whose joints are in other motions.
     pub fn backward(&self) -> Vec<Backward> {
-        let others = [Code::OtherTime, Code::Stopped, Code::Paused];
-        if self.remarks.as_slice().iter().any(|remark| others.contains(&remark.code)) {
+        if !self.is_in_time() {
             return Vec::new();
         }
         let of = |joint: &JointReplay| {

@@ -2,8 +2,9 @@
 
 use super::outcome::{Fault, Report};
 use crate::{
+    remark::Code,
     replay::{JointReplay, Transition},
-    series::last_rest_ends_s,
+    series::whole_until_s,
 };
 
 /// Errors that are nowhere larger than so many standard deviations of the noise, and than so many root mean square, are noise.
@@ -12,9 +13,6 @@ const HARDLY_MORE: f64 = 1.15;
 
 /// A machine that is stopped takes so long at most to come to rest, s.
 const COMES_TO_REST_S: f64 = 0.5;
-
-/// A part of a run ends so long before a planned motion, s.
-const BEFORE_S: f64 = 0.1;
 
 /// What is left of a run, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,15 +51,19 @@ impl Fault {
 }
 
 impl Report {
+    /// Whether the run went on with its plan: one that was slowed or stood is in other motions than its plan, and slower in all it does.
+    pub(super) fn is_in_time(&self) -> bool {
+        let others = [Code::OtherTime, Code::Stopped, Code::Paused];
+        !self.remarks.as_slice().iter().any(|remark| others.contains(&remark.code))
+    }
+
     /// The part of the run that a fault leaves as it was, from or to an instant, s, which is all that there is of some: where the
     /// plan rests, if it does before.
     pub fn leaves_s(&self, fault: &Fault) -> Option<Leaves> {
         match fault {
             Fault::Stopped { from_s: Some(from_s), .. } => {
                 let plans = self.pairs.iter().map(|pair| (&*pair.t_s, pair.planned.as_slice()));
-                let rests_s = last_rest_ends_s(plans, *from_s).map(|s| s - BEFORE_S);
-                let whole_s = rests_s.filter(|s| s.is_finite());
-                Some(Leaves::To(whole_s.unwrap_or(from_s - COMES_TO_REST_S)))
+                Some(Leaves::To(whole_until_s(plans, *from_s).unwrap_or(from_s - COMES_TO_REST_S)))
             }
             Fault::Stopped { to_s, .. } => to_s.map(Leaves::From),
             Fault::Dead { .. } => None,

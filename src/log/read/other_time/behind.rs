@@ -3,7 +3,7 @@
 use super::both::{Both, FAR, LEFT, LESS_THAN_LAG, Steps, apart, lagged, shift_s};
 use crate::{
     math::{line, range, whole},
-    series::{Series, last_rest_ends_s},
+    series::{Series, whole_until_s},
 };
 
 /// Parts of a run, of each of which the lateness is sought among so many, s apart; one that grows on costs so much each time, beside
@@ -25,9 +25,6 @@ const EXPLAINED: f64 = 0.3;
 /// A run that falls behind evenly is never farther from that than this share of all that it falls behind, in so many parts.
 const EVEN: f64 = 0.15;
 const LEAST_PARTS: usize = 15;
-
-/// A part of a run ends so long before a planned motion, s.
-const BEFORE_S: f64 = 0.1;
 
 /// How a run fell behind.
 pub(in crate::log::read) struct Behind {
@@ -150,9 +147,8 @@ impl Behind {
             format!("until the end, where they are {last_s:.1} s late")
         };
         let plans = planned.tracks.iter().map(|track| (track.t_s(), track.position()));
-        let rests_s = last_rest_ends_s(plans, from_s).filter(|s| s.is_finite());
-        let alone = rests_s.map_or(String::new(), |rests_s| {
-            format!("; what was in time is read alone with --to {:.1}", rests_s - BEFORE_S)
+        let alone = whole_until_s(plans, from_s).map_or(String::new(), |until_s| {
+            format!("; what was in time is read alone with --to {until_s:.1}")
         });
         format!(
             "all joints fall behind their plan by {:.1} s from about {from_s:.0} s {until}: the run was slowed or held meanwhile (override, \
