@@ -114,12 +114,13 @@ fn sinks(Backward { joint, kind, count: [count, starts], most, at_s }: &Backward
 
 /// A joint that goes no faster.
 pub(super) fn saturates(
-    Saturated { joint, kind, speed, asked, count: [count, motions] }: &Saturated,
+    Saturated { joint, kind, direction, speed, asked, count: [count, motions] }: &Saturated,
 ) -> String {
     let shown = |speed: f64| with_unit(Dimension::Speed, *kind, speed);
     format!(
-        "{joint} goes no faster than {}, where its plan asks for {} (at that speed in {count} of {} that ask for more): a limit of valve, pump or \
+        "{joint} goes no faster in {} than {}, where its plan asks for {} (at that speed in {count} of {} that ask for more): a limit of valve, pump or \
          drive, and neither lag nor dead band. A plan within it is what helps.",
+        if *direction > 0 { '+' } else { '-' },
         shown(*speed),
         shown(*asked),
         counted(*motions, "motion")

@@ -2,7 +2,6 @@
 
 use super::outcome::Report;
 use crate::{
-    remark::Code,
     replay::{JointReplay, Transition},
     series::{JointKind, Pair, local_quadratic},
 };
@@ -26,9 +25,11 @@ pub struct Saturated {
     pub joint: String,
     /// Whether it turns or slides.
     pub kind: JointKind,
-    /// The speed, rad/s or m/s, and the most that its plan asks for.
+    /// Which way: 1 for growing positions, -1 for falling ones.
+    pub direction: i8,
+    /// The speed, rad/s or m/s.
     pub speed: f64,
-    /// The same of the plan.
+    /// The most that its plan asks for.
     pub asked: f64,
     /// Motions in which it was at that speed, and those whose plan asks for more.
     pub count: [usize; 2],
@@ -42,21 +43,22 @@ struct Motion {
 }
 
 impl Report {
-    /// The joints that do so; none of a run at another time than its plan's, which is slower in all it does.
+    /// The joints that do so, each way by itself: a cylinder is faster in one than in the other.
     pub fn saturated(&self) -> Vec<Saturated> {
-        let others = [Code::OtherTime, Code::Stopped, Code::Paused];
-        if self.remarks.as_slice().iter().any(|remark| others.contains(&remark.code)) {
+        if !self.is_in_time() {
             return Vec::new();
         }
-        self.replay.joints.iter().filter_map(|joint| self.saturated_joint(joint)).collect()
+        self.replay.joints.iter().flat_map(|joint| self.saturated_joint(joint)).collect()
     }
 
-    fn saturated_joint(&self, joint: &JointReplay) -> Option<Saturated> {
-        let pair = self.pairs.iter().find(|pair| pair.name == joint.name)?;
-        let top = joint.peak_speed?;
+    fn saturated_joint(&self, joint: &JointReplay) -> Vec<Saturated> {
+        let Some(pair) = self.pairs.iter().find(|pair| pair.name == joint.name) else { return Vec::new() };
         // Most joints come to what their plan asks for.
-        if fastest_planned(pair) < ASKS * top {
-            return None;
+        let asks_more =
+            |way: &i8| fastest(pair, &pair.planned, *way) > ASKS * fastest(pair, &pair.measured, *way);
+        let ways: Vec<i8> = [1, -1].into_iter().filter(asks_more).collect();
+        if ways.is_empty() {
+            return Vec::new();
         }
         let fits = local_quadratic(&pair.t_s, &pair.measured, &pair.segments, joint.thresholds.window_s, 3);
         let speeds: Vec<f64> = fits.into_iter().map(|fit| fit.velocity).collect();
@@ -64,29 +66,47 @@ impl Report {
             self.replay.transitions.iter().filter(|start| start.joint == joint.name).collect();
         let band = self.replay.rules.sizes(joint.kind).settle_band;
         let ends = starts.iter().skip(1).map(|start| start.planned_onset_s).chain([f64::INFINITY]);
-        let motions: Vec<Motion> = starts
-            .iter()
-            .zip(ends)
-            .filter_map(|(start, end_s)| motion(pair, &speeds, (start, end_s), band))
+        let motions: Vec<(i8, Motion)> = (starts.iter().zip(ends))
+            .filter_map(|(start, end_s)| {
+                Some((start.direction, motion(pair, &speeds, (start, end_s), band)?))
+            })
             .collect();
-        let held = || motions.iter().filter(|motion| motion.held);
-        let fastest = held().map(|motion| motion.fastest);
-        let (low, high) = fastest.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
-        let asks_more = motions.iter().filter(|motion| motion.asked > ASKS * high).count();
-        let one_speed = high < SAME * low && motions.iter().all(|motion| motion.fastest < SAME * high);
-        (held().count() >= MOTIONS && one_speed && 2 * held().count() > asks_more).then(|| Saturated {
-            joint: joint.name.clone(),
-            kind: joint.kind,
-            speed: high,
-            asked: held().map(|motion| motion.asked).fold(0.0, f64::max),
-            count: [held().count(), asks_more],
-        })
+        ways.into_iter().filter_map(|way| one_way(joint, way, &motions)).collect()
     }
 }
 
-/// The largest planned speed, by the plan's own speeds where it has them.
-fn fastest_planned(pair: &Pair) -> f64 {
-    (0..pair.t_s.len().saturating_sub(1)).map(|k| planned(pair, k).abs()).fold(0.0, f64::max)
+/// The speed that no motion one way passes, if some stay at it.
+fn one_way(joint: &JointReplay, direction: i8, motions: &[(i8, Motion)]) -> Option<Saturated> {
+    let own = || motions.iter().filter(|(way, _)| *way == direction).map(|(_, motion)| motion);
+    let held = || own().filter(|motion| motion.held);
+    let fastest = held().map(|motion| motion.fastest);
+    let (low, high) = fastest.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+    let asks_more = own().filter(|motion| motion.asked > ASKS * high).count();
+    let one_speed = high < SAME * low && own().all(|motion| motion.fastest < SAME * high);
+    (held().count() >= MOTIONS && one_speed && 2 * held().count() > asks_more).then(|| Saturated {
+        joint: joint.name.clone(),
+        kind: joint.kind,
+        direction,
+        speed: high,
+        asked: held().map(|motion| motion.asked).fold(0.0, f64::max),
+        count: [held().count(), asks_more],
+    })
+}
+
+/// About the largest speed one way, as it shows over so long, s.
+fn fastest(pair: &Pair, q: &[f64], way: i8) -> f64 {
+    const OVER_S: f64 = 0.2;
+    let (mut from, mut most) = (0, 0.0_f64);
+    for k in 0..q.len() {
+        while from + 1 < k && pair.t_s[k] - pair.t_s[from + 1] >= OVER_S {
+            from += 1;
+        }
+        let span_s = pair.t_s[k] - pair.t_s[from];
+        if span_s >= OVER_S {
+            most = most.max(f64::from(way) * (q[k] - q[from]) / span_s);
+        }
+    }
+    most
 }
 
 fn planned(pair: &Pair, k: usize) -> f64 {
@@ -148,8 +168,8 @@ mod tests {
     use super::*;
     use crate::workflow::report::{Inputs, run};
 
-    /// A report of strokes at 10 deg/s, answered 0.1 s later at most so fast, deg/s.
-    fn report(fastest: f64) -> Report {
+    /// A report of strokes at 10 deg/s, answered 0.1 s later, at most so fast up and down, deg/s.
+    fn report([up, down]: [f64; 2]) -> Report {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.csv");
         let (mut table, mut came) = ("t_s,j1_planned_deg,j1_measured_deg\n".to_owned(), 0.0_f64);
@@ -159,7 +179,7 @@ mod tests {
         };
         for k in 0..4200 {
             let t_s = 0.01 * f64::from(k);
-            came += (plan(t_s - 0.1) - came).clamp(-0.01 * fastest, 0.01 * fastest);
+            came += (plan(t_s - 0.1) - came).clamp(-0.01 * down, 0.01 * up);
             writeln!(table, "{t_s:.2},{:.5},{came:.5}", plan(t_s)).unwrap();
         }
         std::fs::write(&path, table).unwrap();
@@ -167,12 +187,21 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_at_its_limit_is_told_and_one_that_lags_is_not() {
-        let found = report(6.0).saturated();
-        let [one] = found.as_slice() else { panic!("{found:?}") };
-        let degrees = |speed: f64| speed / crate::units::DEGREE_RAD;
-        assert!((degrees(one.speed) - 6.0).abs() < 0.2 && (degrees(one.asked) - 10.0).abs() < 0.2, "{one:?}");
-        assert_eq!((one.count, one.joint.as_str()), ([4, 4], "j1"));
-        assert_eq!(report(100.0).saturated(), []);
+    fn a_joint_at_its_limit_is_told_each_way_and_one_that_lags_is_not() {
+        let told = |limits: [f64; 2]| -> Vec<(i8, f64, [usize; 2])> {
+            let degrees = |speed: f64| (speed / crate::units::DEGREE_RAD * 10.0).round() / 10.0;
+            let found = report(limits).saturated();
+            found.iter().map(|one| (one.direction, degrees(one.speed), one.count)).collect()
+        };
+        let near = |found: &[(i8, f64, [usize; 2])], expected: &[(i8, f64)]| {
+            assert_eq!(found.len(), expected.len(), "{found:?}");
+            for ((way, speed, count), (of, limit)) in found.iter().zip(expected) {
+                assert!(way == of && (speed - limit).abs() < 0.2 && *count == [2, 2], "{found:?}");
+            }
+        };
+        near(&told([6.0, 6.0]), &[(1, 6.0), (-1, 6.0)]);
+        near(&told([7.0, 4.0]), &[(1, 7.0), (-1, 4.0)]);
+        near(&told([100.0, 5.0]), &[(-1, 5.0)]);
+        near(&told([100.0, 100.0]), &[]);
     }
 }
