@@ -17,6 +17,9 @@ const DIFFERENCE: f64 = 1e-3;
 /// Residuals are never told apart more finely, rad: resolution of an encoder of 16 bits.
 const FINEST_RAD: f64 = 0.002 * DEGREE_RAD;
 
+/// Share of the squared tracking error below which what is left is of no part of the model.
+const EXPLAINED: f64 = 2e-4;
+
 /// A round that gains less than this in the cost, a logarithm of likelihood, is one of the last.
 const GAIN: f64 = 0.02;
 
@@ -127,6 +130,11 @@ impl Problem<'_> {
         let mut residuals = Vec::new();
         self.residuals(x, workspace, &mut residuals);
         inefficiency(&residuals)
+    }
+
+    /// Whether hardly anything is left that another part of the model could explain.
+    pub(super) fn explains(&self, x: &[f64], workspace: &mut Workspace) -> bool {
+        self.leaves(x, workspace) < EXPLAINED
     }
 
     /// Share of the squared tracking error, sent less measured about its mean, that is left at `x`.

@@ -10,8 +10,8 @@ use super::{
     estimate::{Problem, Workspace},
     outcome::{LEAST_SHARP_SKILL, LEAST_SMOOTH_SKILL, MOST_UNEXPLAINED},
     parameters::{
-        DEAD_BAND, DEAD_TIME, FEED_FORWARD, FILTER, HYSTERESIS, POSITION_GAIN, SET_VALUE_DELAY, STICTION,
-        TIME_CONSTANT,
+        DAMPING, DEAD_BAND, DEAD_TIME, FEED_FORWARD, FILTER, FREQUENCY, HYSTERESIS, POSITION_GAIN,
+        SET_VALUE_DELAY, STICTION, TIME_CONSTANT,
     },
     robust::inefficiency,
     run::ASKED_OVER_S,
@@ -163,7 +163,12 @@ impl Knowledge {
         let model = problem.model(x);
         let lag_s = model.lag_s();
         let part = |i: usize, value: f64| (i, problem.priors.of(i).deviation * value / lag_s);
-        let parts = [part(DEAD_TIME, model.dead_time_s), part(TIME_CONSTANT, model.time_constant_s)];
+        let parts = [
+            part(DEAD_TIME, model.dead_time_s),
+            part(TIME_CONSTANT, model.time_constant_s),
+            part(DAMPING, model.swing_s()),
+            part(FREQUENCY, -model.swing_s()),
+        ];
         let missed = self.missed(behind(problem, discrepancy::LAG), discrepancy::SMOOTH_LAG);
         let found = self.unfiltered(problem, x, self.positive(lag_s, &parts, missed));
         // Within the lag a smooth start does not leave the dead band: its delay is the band's, and bounds the lag; but where

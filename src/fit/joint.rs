@@ -15,6 +15,7 @@ use super::{
     run::{Run, Sample},
     set_values::SetValues,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
+    swing,
     telling::{of, telling},
 };
 use crate::{
@@ -71,7 +72,9 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
             limits: asked_for(runs, limits),
             valve: Valve::default(),
             late: false,
+            swing: false,
             integral: true,
+            integral_limit: false,
             feed_forward: true,
         },
         part: Part::All,
@@ -98,6 +101,14 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     if let Some(beyond) = beyond(&problem, &found, &mut workspace) {
         problem.shown.valve.beyond = true;
         found = beyond;
+    }
+    if let Some((limited, shown)) = integral::limited(&problem, &found, &mut workspace) {
+        problem.shown = shown;
+        found = limited;
+    }
+    if let Some(swinging) = swing::swinging(&problem, &found, &mut workspace) {
+        problem.shown.swing = true;
+        found = swinging;
     }
     if let Some(without) = integral::without(&problem, &found, &mut workspace) {
         problem.shown.integral = false;
@@ -145,13 +156,15 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
 /// Whether speed is fed forward, and whether set values come late; with models that explain the data nearly as well.
 fn fed(problem: &mut Problem, mut found: Estimate, workspace: &mut Workspace) -> (Estimate, Vec<Model>) {
     let mut rivals = Vec::new();
-    match FeedForward::of(problem, &found, workspace) {
-        FeedForward::None(without) => {
-            problem.shown.feed_forward = false;
-            found = without;
+    if problem.shown.feed_forward {
+        match FeedForward::of(problem, &found, workspace) {
+            FeedForward::None(without) => {
+                problem.shown.feed_forward = false;
+                found = without;
+            }
+            FeedForward::MayBeNone(model) => rivals.push(*model),
+            FeedForward::Some => {}
         }
-        FeedForward::MayBeNone(model) => rivals.push(*model),
-        FeedForward::Some => {}
     }
     match SetValues::of(problem, &found, workspace) {
         SetValues::Late(late, shown, prompt) => {

@@ -10,10 +10,11 @@ pub const STEP_S: f64 = 0.01;
 /// A joint with its valve, its position loop and its sensor, from sent to measured angle.
 ///
 /// The set values, angle and speed, come late by a `delay` and pass a filter of first order. The loop wants a speed
-/// w = `feed_forward` * sent speed + `position_gain` * error + integral, which arrives after the dead time; the spool follows it with a play of ±`hysteresis`. What is left beyond the dead band,
+/// w = `feed_forward` * sent speed + `position_gain` * error + integral, the last held within ±`integral_limit`, which arrives after the dead time; the spool follows it with a play of ±`hysteresis`. What is left beyond the dead band,
 /// b, gives the speed b² / (b + `edge`). Scaled by exp(±`asymmetry` / 2) for growing and shrinking angles and by the
 /// pose, and clipped to what the valve opens to, it is approached with a time constant, within the acceleration limits; of that the
-/// joint has what its speed limits leave. A valve that `opens_beyond` them takes time to come back.
+/// joint has what its speed limits leave. A valve that `opens_beyond` them takes time to come back. A joint that swings on its oil
+/// or its link follows that speed as a mass on a spring does.
 /// Speeds, gains and dead band are as the joint shows them: a loop gain that no log can tell apart is in all of them.
 ///
 /// Pairs are for growing and for shrinking angles, both positive; a limit that no data showed is
@@ -29,6 +30,9 @@ pub struct Model {
     pub position_gain_1_s: f64,
     /// Growth of the wanted speed per position error, 1/s².
     pub integral_gain_1_s2: f64,
+    /// Largest integral part of the wanted speed either way, rad/s; `None` where no data showed one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub integral_limit_rad_s: Option<f64>,
     /// Wanted speed per sent speed.
     pub feed_forward: f64,
     /// Logarithm of the ratio of the gains for growing and shrinking angles.
@@ -73,6 +77,12 @@ pub struct Model {
     /// How far the valve opens beyond what the largest speeds take, as a share of that; 0 where it opens no farther.
     #[serde(default)]
     pub opens_beyond: f64,
+    /// Natural frequency of a joint that swings between valve and sensor, rad/s; 0 where none shows.
+    #[serde(default)]
+    pub natural_frequency_rad_s: f64,
+    /// Its damping, as a share of the critical one.
+    #[serde(default)]
+    pub damping_ratio: f64,
     /// Full width of the play before the sensor, rad.
     pub backlash_rad: f64,
 }
@@ -84,6 +94,7 @@ impl Model {
         time_constant_s: 0.0,
         position_gain_1_s: 10.0,
         integral_gain_1_s2: 0.0,
+        integral_limit_rad_s: None,
         feed_forward: 1.0,
         asymmetry: 0.0,
         dead_band_rad_s: 0.0,
@@ -101,6 +112,8 @@ impl Model {
         set_value_filter_s: 0.0,
         set_value_delay_s: 0.0,
         opens_beyond: 0.0,
+        natural_frequency_rad_s: 0.0,
+        damping_ratio: 0.0,
         backlash_rad: 0.0,
     };
 
@@ -115,6 +128,7 @@ impl Model {
             ("time_constant_s", self.time_constant_s),
             ("position_gain_1_s", self.position_gain_1_s),
             ("integral_gain_1_s2", self.integral_gain_1_s2),
+            ("integral_limit_rad_s", self.integral_limit_rad_s.unwrap_or_default()),
             ("feed_forward", self.feed_forward),
             ("dead_band_rad_s", self.dead_band_rad_s),
             ("stiction_rad_s", self.stiction_rad_s),
@@ -123,6 +137,8 @@ impl Model {
             ("set_value_filter_s", self.set_value_filter_s),
             ("set_value_delay_s", self.set_value_delay_s),
             ("opens_beyond", self.opens_beyond),
+            ("natural_frequency_rad_s", self.natural_frequency_rad_s),
+            ("damping_ratio", self.damping_ratio),
             ("backlash_rad", self.backlash_rad),
         ];
         let limits = [
@@ -165,9 +181,29 @@ impl Model {
     }
 
     /// What passes between a change of the speed that the loop wants and half of its effect, s: dead time, time
-    /// constant and half a step of the loop. What delays set values comes before that.
+    /// constant, swing and half a step of the loop. What delays set values comes before that.
     pub fn lag_s(&self) -> f64 {
-        self.dead_time_s + self.time_constant_s + 0.5 * STEP_S
+        self.dead_time_s + self.time_constant_s + self.swing_s() + 0.5 * STEP_S
+    }
+
+    /// The model without its swing, as far behind.
+    pub(super) fn calmed(&self) -> Self {
+        Self {
+            dead_time_s: self.dead_time_s + self.swing_s(),
+            natural_frequency_rad_s: 0.0,
+            damping_ratio: 0.0,
+            ..*self
+        }
+    }
+
+    /// Whether the joint swings between valve and sensor.
+    pub fn swings(&self) -> bool {
+        self.natural_frequency_rad_s > 0.0
+    }
+
+    /// How far a joint that swings is behind where it moves evenly, s.
+    pub(super) fn swing_s(&self) -> f64 {
+        if self.swings() { 2.0 * self.damping_ratio / self.natural_frequency_rad_s } else { 0.0 }
     }
 }
 

@@ -7,7 +7,7 @@ use super::model::Model;
 use crate::units::DEGREE_RAD;
 
 /// Number of parameters that all runs share.
-pub(super) const SHARED: usize = 22;
+pub(super) const SHARED: usize = 25;
 
 pub(super) const DEAD_TIME: usize = 0;
 pub(super) const TIME_CONSTANT: usize = 1;
@@ -29,6 +29,9 @@ pub(super) const EDGE: usize = LIMITS + 4;
 pub(super) const FILTER: usize = EDGE + 1;
 pub(super) const SET_VALUE_DELAY: usize = FILTER + 1;
 pub(super) const BEYOND: usize = SET_VALUE_DELAY + 1;
+pub(super) const INTEGRAL_LIMIT: usize = BEYOND + 1;
+pub(super) const FREQUENCY: usize = INTEGRAL_LIMIT + 1;
+pub(super) const DAMPING: usize = FREQUENCY + 1;
 
 /// Width of the play between joint and sensor that every model has, rad: a free one stands in for the lag of smooth runs.
 const BACKLASH_RAD: f64 = 0.05 * DEGREE_RAD;
@@ -75,6 +78,9 @@ const PRIORS: [Prior; SHARED] = [
     positive(0.1, 0.8),
     positive(0.05, 1.0),
     positive(1.0, 1.0),
+    positive(2.0 * DEGREE_RAD, 1.0),
+    positive(12.0, 0.7),
+    positive(0.3, 0.7),
 ];
 
 /// What a valve may be.
@@ -93,10 +99,14 @@ pub(super) struct Shown {
     pub(super) limits: [bool; 4],
     /// What the valve is beside a dead band.
     pub(super) valve: Valve,
+    /// That the joint swings between valve and sensor.
+    pub(super) swing: bool,
     /// Set values that come late, by a filter and a delay.
     pub(super) late: bool,
     /// Integral action of the position loop.
     pub(super) integral: bool,
+    /// That it is held within limits.
+    pub(super) integral_limit: bool,
     /// Speed that is fed forward.
     pub(super) feed_forward: bool,
 }
@@ -109,6 +119,8 @@ impl Shown {
             FILTER | SET_VALUE_DELAY => self.late,
             BEYOND => self.valve.beyond,
             INTEGRAL_GAIN => self.integral,
+            FREQUENCY | DAMPING => self.swing,
+            INTEGRAL_LIMIT => self.integral && self.integral_limit,
             FEED_FORWARD => self.feed_forward,
             LIMITS.. => self.limits.get(parameter - LIMITS).is_none_or(|shown| *shown),
             _ => true,
@@ -150,6 +162,7 @@ impl Priors {
             time_constant_s: value(TIME_CONSTANT),
             position_gain_1_s: value(POSITION_GAIN),
             integral_gain_1_s2: if shown.integral { value(INTEGRAL_GAIN) } else { 0.0 },
+            integral_limit_rad_s: shown.has(INTEGRAL_LIMIT).then(|| value(INTEGRAL_LIMIT)),
             feed_forward: if shown.feed_forward { value(FEED_FORWARD) } else { 0.0 },
             asymmetry: value(ASYMMETRY),
             dead_band_rad_s: value(DEAD_BAND),
@@ -167,6 +180,8 @@ impl Priors {
             set_value_filter_s: if shown.late { value(FILTER) } else { 0.0 },
             set_value_delay_s: if shown.late { value(SET_VALUE_DELAY) } else { 0.0 },
             opens_beyond: if shown.valve.beyond { value(BEYOND) } else { 0.0 },
+            natural_frequency_rad_s: if shown.swing { value(FREQUENCY) } else { 0.0 },
+            damping_ratio: if shown.swing { value(DAMPING) } else { 0.0 },
             backlash_rad: BACKLASH_RAD,
         }
     }

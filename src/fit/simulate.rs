@@ -14,6 +14,9 @@ const FREEZE_RAD: f64 = 0.08 * DEGREE_RAD;
 /// No joint is faster, rad/s or m/s: the response of an unstable loop stays a number.
 const FASTEST_RAD_S: f64 = 50.0;
 
+/// No joint swings faster, rad/s: steps tell no more.
+const FASTEST_SWING_RAD_S: f64 = 60.0;
+
 /// State in which a run begins.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Start {
@@ -77,6 +80,7 @@ fn lanes<const N: usize>(
     let of = |number: fn(&Model) -> f64| models.map(number);
     let (feed_forward, position_gain) = (of(|m| m.feed_forward), of(|m| m.position_gain_1_s));
     let (integral_step, offset) = (of(|m| m.integral_gain_1_s2 * STEP_S), of(|m| m.offset_rad));
+    let integral_most = of(|m| m.integral_limit_rad_s.unwrap_or(f64::INFINITY));
     let up = of(|m| m.dead_band_centre_rad_s + m.dead_band_rad_s);
     let down = of(|m| m.dead_band_centre_rad_s - m.dead_band_rad_s);
     let (lowest, highest) = (of(|m| m.pose_rad[0]), of(|m| m.pose_rad[1]));
@@ -92,6 +96,10 @@ fn lanes<const N: usize>(
     let edge = of(|m| m.edge_rad_s);
     let passes =
         of(|m| if m.set_value_filter_s > 0.0 { -(-STEP_S / m.set_value_filter_s).exp_m1() } else { 1.0 });
+    let frequency = of(|m| m.natural_frequency_rad_s.min(FASTEST_SWING_RAD_S));
+    let pull = frequency.map(|rad_s| rad_s * rad_s * STEP_S);
+    let damped: [f64; N] = std::array::from_fn(|i| 2.0 * models[i].damping_ratio * frequency[i] * STEP_S);
+    let swings = frequency.iter().any(|rad_s| *rad_s > 0.0);
     let half_play = of(|m| 0.5 * m.backlash_rad);
     let delay = of(|m| m.dead_time_s / STEP_S);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few hundred steps")]
@@ -101,6 +109,8 @@ fn lanes<const N: usize>(
     let (mut seen, mut speed) = (angle, start.map(|start| start.speed_rad_s));
     // The speed that the opening of the valve would give without limit.
     let mut opening = speed;
+    // The joint's own where it swings, and how that changes.
+    let (mut own, mut gains) = (speed, [0.0; N]);
     let mut spool = [0.0; N];
     let mut set = [sent.first().copied().unwrap_or_default(); N];
     let mut integral = start.map(|start| start.integral_rad_s);
@@ -114,6 +124,7 @@ fn lanes<const N: usize>(
             let error_rad = set[i].0 - seen[i];
             let grows = moves || error_rad.abs() >= FREEZE_RAD;
             integral[i] += if grows { integral_step[i] * error_rad } else { 0.0 };
+            integral[i] = within(integral[i], -integral_most[i], integral_most[i]);
             wants[i] = feed_forward[i] * set[i].1 + position_gain[i] * error_rad + integral[i];
         }
         wanted.extend_from_slice(&wants);
@@ -145,10 +156,15 @@ fn lanes<const N: usize>(
             }
         }
         for i in 0..N {
-            let before = speed[i];
+            let before = own[i];
             opening[i] += within(approach[i] * (target[i] - opening[i]), least[i], most[i]);
             speed[i] = within(opening[i], slowest[i], fastest[i]);
-            angle[i] += 0.5 * STEP_S * (before + speed[i]);
+            own[i] = speed[i];
+            if swings && frequency[i] > 0.0 {
+                gains[i] += pull[i] * (speed[i] - before) - damped[i] * gains[i];
+                own[i] = before + STEP_S * gains[i];
+            }
+            angle[i] += 0.5 * STEP_S * (before + own[i]);
         }
     }
 }

@@ -122,6 +122,12 @@ pub(super) struct Aim<'a> {
     pub(super) offset_rad: f64,
 }
 
+/// A loop that feeds less speed forward is behind by its gain, too, and may need more time ahead.
+const FED: f64 = 0.5;
+
+/// No more steps than this.
+const MOST_AHEAD: usize = 100;
+
 /// The correction whose predicted response, with a disturbance that repeats itself, is the plan; none where `fade` is zero.
 pub(super) fn inverted(
     model: &Model,
@@ -130,6 +136,25 @@ pub(super) fn inverted(
     aim: Aim,
     workspace: &mut Workspace,
 ) -> Vec<f64> {
+    let by_lag = inverted_ahead(model, manner, manner.ahead, (planned, fade), aim, workspace);
+    let short = 1.0 - model.feed_forward;
+    if short < FED {
+        return by_lag.1;
+    }
+    let more = steps_in(0.5 * short / model.position_gain_1_s.max(f64::MIN_POSITIVE)).min(MOST_AHEAD);
+    let by_gain = inverted_ahead(model, manner, manner.ahead + more, (planned, fade), aim, workspace);
+    if by_gain.0 < by_lag.0 { by_gain.1 } else { by_lag.1 }
+}
+
+/// The same with corrections so many steps before what they correct, after what is left of the error.
+fn inverted_ahead(
+    model: &Model,
+    manner: &Manner,
+    ahead: usize,
+    (planned, fade): (&[(f64, f64)], &[f64]),
+    aim: Aim,
+    workspace: &mut Workspace,
+) -> (f64, Vec<f64>) {
     let last = planned.len().saturating_sub(1);
     // What a loop that rings leaves unexplained is not the same in the next run.
     let disturbance_rad = aim.disturbance_rad.filter(|_| manner.calm());
@@ -151,7 +176,7 @@ pub(super) fn inverted(
             best = (left, correction_rad.clone());
         }
         for (k, correction) in correction_rad.iter_mut().enumerate() {
-            *correction += SHARE * error_rad[(k + manner.ahead).min(last)];
+            *correction += SHARE * error_rad[(k + ahead).min(last)];
         }
         lowpass(&mut correction_rad, inner_hz, STEP_S);
         faded(&mut correction_rad, fade);
@@ -162,7 +187,7 @@ pub(super) fn inverted(
     if !manner.calm() {
         lowpass(&mut best.1, manner.cut_off_hz, STEP_S);
     }
-    best.1
+    best
 }
 
 /// A first correction, from the model and from the run behind it: what was sent, what the model makes of it,

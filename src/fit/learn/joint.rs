@@ -96,8 +96,8 @@ impl<'a> Joint<'a> {
         let chance = known.and_then(|fit| unlearnt(&mut answers, &planned, &fit.model, &mut workspace));
         // What a joint does that follows another plan, or none, is no oscillation of its loop.
         let newest = fit.zip(answers.last()).filter(|_| !astray);
-        let oscillation =
-            newest.map(|(fit, run)| Oscillation::of(&unexplained_rad(run, &fit.model, &mut workspace)));
+        let oscillation = newest
+            .map(|(fit, run)| Oscillation::of(&unexplained_rad(run, &fit.model.calmed(), &mut workspace)));
         Ok(Self {
             fit,
             name: track.name(),
@@ -165,6 +165,10 @@ impl<'a> Joint<'a> {
             character = Character::Rings;
         }
         let frequency_hz = self.oscillation.map_or(f64::INFINITY, |found| found.frequency_hz);
+        // A loop that rings is not to be driven at its frequency, however well that is known.
+        let calmed = (character != Character::Calm && fit.model.swings())
+            .then(|| JointFit { model: fit.model.calmed(), ..fit.clone() });
+        let fit = calmed.as_ref().unwrap_or(fit);
         let manner = Manner::new(&fit.model, character, frequency_hz, most_rad);
         made.cut_off_hz = manner.cut_off_hz;
         made.spread_rad = spread_rad(&self.answers, &self.sent, &fit.model, &mut self.workspace);

@@ -1,5 +1,7 @@
 //! A fit as tables.
 
+use std::f64::consts::TAU;
+
 use super::Shown;
 use crate::{
     fit::{
@@ -8,7 +10,7 @@ use crate::{
     },
     render::{
         kit::{Column, Document, Id, Section, Sentence, Table, counted, some_of},
-        metric::{Units, number, position},
+        metric::{Units, number, position, with_unit},
     },
     replay::Dimension,
     series::JointKind,
@@ -205,12 +207,7 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         };
         lines.extend(open.iter().any(|open| open.starts_with("speed")).then_some(why));
     }
-    let of = |which: &dyn Fn(&JointFit) -> bool| {
-        let joints: Vec<&str> =
-            fit.joints.iter().filter(|joint| which(joint)).map(|joint| joint.name.as_str()).collect();
-        (!joints.is_empty()).then(|| joints.join(", "))
-    };
-    lines.extend(of(&|joint| !joint.model_holds).map(|joints| {
+    lines.extend(named(fit, &|joint| !joint.model_holds).map(|joints| {
         format!(
             "The model does not hold for {joints}: what it leaves unexplained rings, or is more than {:.1} % of the peaks of sharp \
              starts, or its held-out R2 is below {LEAST_SMOOTH_SKILL}, or below {LEAST_SHARP_SKILL} where starts are sharp. \
@@ -218,17 +215,55 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
             100.0 * MOST_UNEXPLAINED
         )
     }));
-    lines.extend(of(&|joint| joint.model_holds && joint.model.edge_rad_s > 0.0).map(|joints| {
+    lines.extend(structure(fit));
+    lines.extend(left_out_line(fit));
+    lines.into_iter().map(Sentence::Finding).collect()
+}
+
+/// The joints of which something is so; `None` of none.
+fn named(fit: &Fit, which: &dyn Fn(&JointFit) -> bool) -> Option<String> {
+    let joints: Vec<&str> =
+        fit.joints.iter().filter(|joint| which(joint)).map(|joint| joint.name.as_str()).collect();
+    (!joints.is_empty()).then(|| joints.join(", "))
+}
+
+/// What only some machines have, of joints whose model holds.
+fn structure(fit: &Fit) -> Vec<String> {
+    let mut lines = Vec::new();
+    lines.extend(named(fit, &|joint| joint.model_holds && joint.model.edge_rad_s > 0.0).map(|joints| {
         format!(
             "The speed of {joints} grows by more than what is asked: the valve opens gradually. Gains are those of the \
              wide-open valve."
         )
     }));
-    lines.extend(of(&|joint| joint.model_holds && joint.model.opens_beyond > 0.0).map(|joints| {
+    lines.extend(named(fit, &|joint| joint.model_holds && joint.model.opens_beyond > 0.0).map(|joints| {
         format!(
             "The valve of {joints} opens farther than the largest speed takes, so something behind it, a pump or a flow regulator, \
              limits the speed: a joint at its limit comes back from it late."
         )
+    }));
+    let swinging = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.swings());
+    let swinging: Vec<String> = swinging
+        .map(|joint| {
+            let (hz, damped) = (joint.model.natural_frequency_rad_s / TAU, joint.model.damping_ratio);
+            format!("{} at {hz:.1} Hz with {:.0} % of critical damping", joint.name, 100.0 * damped)
+        })
+        .collect();
+    lines.extend((!swinging.is_empty()).then(|| {
+        format!(
+            "Between valve and sensor a joint swings, on its oil or its link: {}. The lag holds that.",
+            swinging.join(", ")
+        )
+    }));
+    let held = fit.joints.iter().filter(|joint| joint.model_holds);
+    let held: Vec<String> = held
+        .filter_map(|joint| {
+            let limit = joint.model.integral_limit_rad_s?;
+            Some(format!("{} {}", joint.name, with_unit(Dimension::Speed, joint.kind, limit)))
+        })
+        .collect();
+    lines.extend((!held.is_empty()).then(|| {
+        format!("The integral of the position loop is held within limits, as a speed: {}.", held.join(", "))
     }));
     let late = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.set_values_late_s() > 0.0);
     let late: Vec<String> = late.map(|joint| format!("{} {}", joint.name, LATE.alone(joint))).collect();
@@ -239,14 +274,13 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
             late.join(", ")
         )
     }));
-    lines.extend(of(&|joint| joint.model_holds && !joint.feed_forward.identified).map(|joints| {
+    lines.extend(named(fit, &|joint| joint.model_holds && !joint.feed_forward.identified).map(|joints| {
         format!(
             "The logs show no sure feed-forward of {joints}. Without one a filter of set values acts as a lower gain, more \
              lag and another dead band: logs of angles hardly tell them apart."
         )
     }));
-    lines.extend(left_out_line(fit));
-    lines.into_iter().map(Sentence::Finding).collect()
+    lines
 }
 
 /// Which joints are not fitted, and why; `None` if all are.

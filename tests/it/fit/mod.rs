@@ -3,3 +3,4 @@
 mod inversion;
 mod matched;
 mod recovery;
+mod structure;

@@ -1,0 +1,41 @@
+//! Whether a joint swings between valve and sensor, on its oil or its link: what it does then is behind what is asked by more the
+//! faster that changes, which late set values would stand in for.
+
+use super::{
+    estimate::{Estimate, Problem, Workspace},
+    parameters::{DAMPING, DEAD_TIME, FREQUENCY, TIME_CONSTANT},
+};
+
+/// The cost, a logarithm of likelihood, must fall by this.
+const GAIN: f64 = 12.0;
+
+/// A joint with more damping is behind, and does not swing.
+const MOST_DAMPING: f64 = 0.9;
+
+/// Natural frequencies, rad/s, where descents start, with this damping, dead time and time constant, s.
+const STARTS_RAD_S: [f64; 3] = [6.0, 12.0, 24.0];
+const DAMPED: f64 = 0.3;
+const DEAD_TIME_S: f64 = 0.06;
+const TIME_CONSTANT_S: f64 = 0.03;
+
+/// The estimate of a joint that swings, if the data show it.
+pub(super) fn swinging(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Option<Estimate> {
+    if problem.explains(&found.x, workspace) {
+        return None;
+    }
+    let mut other = problem.clone();
+    other.shown.swing = true;
+    let place = |i: usize, value: f64| problem.priors.of(i).place(value);
+    let starts = STARTS_RAD_S.map(|frequency_rad_s| {
+        let mut x = found.x.clone();
+        x[FREQUENCY] = place(FREQUENCY, frequency_rad_s);
+        x[DAMPING] = place(DAMPING, DAMPED);
+        x[DEAD_TIME] = place(DEAD_TIME, DEAD_TIME_S);
+        x[TIME_CONSTANT] = place(TIME_CONSTANT, TIME_CONSTANT_S);
+        x
+    });
+    let before = problem.cost_at(&found.x, found.scale_rad, workspace);
+    let with = other.search(starts, workspace);
+    let gained = before - other.cost_at(&with.x, found.scale_rad, workspace);
+    (gained > GAIN && other.model(&with.x).damping_ratio < MOST_DAMPING).then_some(with)
+}
