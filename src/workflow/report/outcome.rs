@@ -13,6 +13,7 @@ use crate::{
     series::{Broken, Pair, Signal},
     workflow::{
         carried::{Held, Schedule},
+        correctable::Uncorrectable,
         plan::PlanDocument,
     },
 };
@@ -83,6 +84,8 @@ pub struct Report {
     pub fault: Option<Fault>,
     /// Why no command can be made from it, as far as a fit was asked for and says so.
     pub unfit: Option<String>,
+    /// Why no command is corrected for its plan.
+    pub uncorrectable: Option<Uncorrectable>,
     /// What was doubtful.
     pub remarks: Remarks,
     /// Each joint's error over the run, in the order of its joints.
