@@ -15,14 +15,14 @@ use crate::{
             clean, ms,
             page::{
                 Plots,
-                chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, times},
+                chart::{Band, Chart, Panel, Role, Series, Shade, Size, at, rounded, times},
                 envelope::with_parts,
                 strip::{Row, intervals},
             },
         },
         metric::{on_paper, position, unit},
     },
-    replay::{Dimension, JointReplay, Replay, Transition},
+    replay::{Answer, Dimension, JointReplay, Replay, Transition},
     series::Pair,
     workflow::report::Report,
 };
@@ -101,12 +101,20 @@ fn left_out(drawn: usize, all: usize) -> String {
     if drawn < all { said() } else { String::new() }
 }
 
-/// The window of a transition, and in it the time until the joint answers.
+/// The window of a transition, and in it the time until the joint answers: all of it where it never does.
 fn bands(transition: &Transition) -> Vec<Band> {
     let [from, to] = transition.window_s.map(rounded);
-    let late =
-        transition.measured_onset_s.filter(|s| *s > from).map(|s| Band { from, to: rounded(s), late: true });
-    std::iter::once(Band { from, to, late: false }).chain(late).collect()
+    let waits = waits(transition, from);
+    std::iter::once(Band { from, to, shade: Shade::Window }).chain(waits).collect()
+}
+
+/// From an instant of a start until the joint answers, or to the end of its window.
+pub(super) fn waits(start: &Transition, from: f64) -> Option<Band> {
+    let (to_s, shade) = match (start.answer, start.measured_onset_s) {
+        (Answer::Never, _) => (start.window_s[1], Shade::Never),
+        (_, onset_s) => (onset_s?, Shade::Late),
+    };
+    (to_s > from).then(|| Band { from, to: rounded(to_s), shade })
 }
 
 /// Joints with their lags, s.

@@ -105,8 +105,41 @@ impl Series {
 pub(in crate::render) struct Band {
     pub(in crate::render) from: f64,
     pub(in crate::render) to: f64,
+    pub(in crate::render) shade: Shade,
+}
+
+/// What a stretch is shaded for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(in crate::render) enum Shade {
     /// The joint has not answered yet.
-    pub(in crate::render) late: bool,
+    Late,
+    /// It never does.
+    Never,
+    /// A transition.
+    Window,
+}
+
+impl Shade {
+    pub(in crate::render) const ALL: [Self; 3] = [Self::Late, Self::Never, Self::Window];
+
+    /// In a legend, and in the sheet of styles.
+    pub(in crate::render) fn names(self) -> [&'static str; 2] {
+        match self {
+            Self::Late => ["not yet answered", "late"],
+            Self::Never => ["never answered", "never"],
+            Self::Window => ["transition", "window"],
+        }
+    }
+
+    /// On paper, and how much of it.
+    pub(in crate::render) fn colour(self) -> (RGBColor, f64) {
+        match self {
+            Self::Late => (RGBColor(232, 160, 32), 0.45),
+            Self::Never => (RGBColor(178, 58, 0), 0.3),
+            Self::Window => (RGBColor(232, 160, 32), 0.13),
+        }
+    }
 }
 
 /// What a series is, and so how it looks.

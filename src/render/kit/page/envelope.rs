@@ -63,28 +63,6 @@ pub(in crate::render) fn with_parts(
     places
 }
 
-/// The largest value of each bucket of equal length, about `most` of them.
-pub(in crate::render) fn crests(
-    segments: &[Range<usize>],
-    values: &[f64],
-    most: usize,
-) -> Vec<Option<usize>> {
-    let n: usize = segments.iter().map(ExactSizeIterator::len).sum();
-    let size = n.div_ceil(most.max(1)).max(1);
-    let mut places = Vec::new();
-    for segment in segments {
-        if !places.is_empty() {
-            places.push(None);
-        }
-        let starts = segment.clone().step_by(size);
-        let largest = |start: usize| {
-            (start..(start + size).min(segment.end)).max_by(|a, b| values[*a].total_cmp(&values[*b]))
-        };
-        places.extend(starts.map(largest));
-    }
-    places
-}
-
 fn extremes(bucket: Range<usize>, series: &[&[f64]]) -> Vec<usize> {
     let mut kept = Vec::with_capacity(2 * series.len());
     for values in series {
@@ -120,15 +98,13 @@ mod tests {
     }
 
     #[test]
-    fn parts_keep_their_course_and_crests_only_what_is_largest() {
+    fn parts_keep_their_course() {
         let wave: Vec<f64> = (0..9000_i32).map(|k| f64::from(k % 10)).collect();
         let segments = [0..5000, 5000..9000];
         let places = with_parts(&segments, &[&wave], 200, (&[4000..4100, 4990..5010], 100));
         assert!((4000..4100).chain(4990..5010).all(|k| places.contains(&Some(k))), "{places:?}");
         assert_eq!(places.iter().filter(|place| place.is_none()).count(), 1);
         assert!(places.len() < 400, "{}", places.len());
-        let crests = crests(&segments, &wave, 100);
-        assert!(crests.iter().flatten().all(|k| wave[*k] > 8.5), "{crests:?}");
     }
 
     #[test]

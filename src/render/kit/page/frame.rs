@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 
 use super::{
     blocks,
-    chart::{Chart, Role, embedded},
+    chart::{Chart, Role, Shade, embedded},
     paper::{self, Paper},
 };
 use crate::{
@@ -88,8 +88,10 @@ fn legend(chart: &Chart) -> Markup {
     }
     html! {
         @for (name, role) in shown { span { i class=(class(role)) {} (clean(name)) } }
-        @if chart.bands.iter().any(|band| band.late) { span { i class="late" {} "not yet answered" } }
-        @if chart.bands.iter().any(|band| !band.late) { span { i class="window" {} "transition" } }
+        @for shade in Shade::ALL {
+            @let [name, class] = shade.names();
+            @if chart.bands.iter().any(|band| band.shade == shade) { span { i class=(class) {} (name) } }
+        }
     }
 }
 

@@ -103,7 +103,7 @@ const plotted = (() => {
       c.save();
       c.beginPath(); c.rect(left, top, width, height); c.clip();
       for (const band of spec.bands) {
-        c.fillStyle = colour(band.late ? 'late' : 'window');
+        c.fillStyle = colour(band.shade);
         c.fillRect(this.pixel(band.from), top, Math.max(this.pixel(band.to) - this.pixel(band.from), 1), height);
       }
       c.restore();
