@@ -5,15 +5,15 @@ use std::ops::Range;
 /// Places to draw, in order; `None` lifts the pen between segments.
 ///
 /// Of series that share their instants, cut into continuous segments of `0..n`, about `most` places remain: all,
-/// if there are no more, else those where a series is least or most within its bucket of equal length. A spike of
-/// one sample stays.
+/// if there are no more, else those where a series is least or most within its bucket of equal length, and the ends of
+/// the bucket: what happens in one makes no slope in the next. A spike of one sample stays.
 pub(in crate::render) fn envelope(
     segments: &[Range<usize>],
     series: &[&[f64]],
     most: usize,
 ) -> Vec<Option<usize>> {
     let n: usize = segments.iter().map(ExactSizeIterator::len).sum();
-    let buckets = (most / (2 * series.len()).max(1)).max(1);
+    let buckets = (most / (2 * series.len() + 2)).max(1);
     let size = if n <= most { 1 } else { n.div_ceil(buckets) };
     let mut places = Vec::new();
     for segment in segments {
@@ -24,12 +24,7 @@ pub(in crate::render) fn envelope(
         while start < segment.end {
             let end = (start + size).min(segment.end);
             let mut kept = extremes(start..end, series);
-            if start == segment.start {
-                kept.push(start);
-            }
-            if end == segment.end {
-                kept.push(end - 1);
-            }
+            kept.extend([start, end - 1]);
             kept.sort_unstable();
             kept.dedup();
             places.extend(kept.into_iter().map(Some));
@@ -105,6 +100,19 @@ mod tests {
         assert!((4000..4100).chain(4990..5010).all(|k| places.contains(&Some(k))), "{places:?}");
         assert_eq!(places.iter().filter(|place| place.is_none()).count(), 1);
         assert!(places.len() < 400, "{}", places.len());
+    }
+
+    #[test]
+    fn a_motion_makes_no_slope_where_nothing_moves() {
+        let values: Vec<f64> =
+            (0..100_000).map(|k| if (50_500..50_600).contains(&k) { 1.0 } else { 0.0 }).collect();
+        let places: Vec<usize> =
+            envelope(&one(values.len()), &[&values], 400).into_iter().flatten().collect();
+        let slopes = places.windows(2).filter(|two| (values[two[0]] - values[two[1]]).abs() > 0.5);
+        assert!(
+            slopes.clone().count() == 2 && slopes.flatten().all(|k| (50_000..51_100).contains(k)),
+            "{places:?}"
+        );
     }
 
     #[test]
