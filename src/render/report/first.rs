@@ -90,7 +90,11 @@ fn rows(report: &Report, joints: &[&JointReplay], span_s: [f64; 2]) -> Markup {
     html! {
         @for (joint, pair) in joints.iter().filter_map(|joint| Some((joint, own(joint)?))) {
             tr {
-                th title=(clean(&joint.name)) { (clean(&joint.name)) }
+                th title=(clean(&joint.name)) {
+                    (clean(&joint.name))
+                    span class="under" { (position(joint.kind, joint.tracking_error.peak)) }
+                    span class={ "under" @if joint.unanswered_starts > 0 { " bad" } } { (latest(report, joint)) }
+                }
                 td class="lane" { (drawn(report, joint, pair, span_s)) }
                 td class="number" { (position(joint.kind, joint.tracking_error.peak)) }
                 td class={ "number" @if joint.unanswered_starts > 0 { " bad" } } { (latest(report, joint)) }

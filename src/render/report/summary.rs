@@ -106,6 +106,7 @@ fn place_of_error(all: &Together) -> Markup {
         "No clear difference".to_owned()
     };
     let mostly = format!("Mostly {}", all.shift());
+    let why = all.why_undecided(c);
     let headline = match c.verdict {
         _ if all.mostly_lag().is_some() => &mostly,
         Verdict::Transitions => "In the transitions",
@@ -121,7 +122,11 @@ fn place_of_error(all: &Together) -> Markup {
                 100.0 * c.squared_error_share_inside,
                 100.0 * c.time_share_inside,
             ))
-            @if let Some(test) = c.test { " (" span class="whole" { "p = " (probability(test.p_value)) } ")" }
+            @match (why, c.test) {
+                (Some(why), _) => { "; " (why) }
+                (None, Some(test)) => { " (" span class="whole" { "p = " (probability(test.p_value)) } ")" }
+                (None, None) => {}
+            }
         }
     };
     card("", &name, headline, &body)

@@ -15,12 +15,13 @@ use crate::{
                 chart::{Chart, Panel, Role, Series, Size, rounded},
             },
         },
-        metric::{on_paper, unit},
+        metric::{on_paper, unit, with_unit},
     },
     replay::Dimension,
     series::JointKind,
     workflow::{
         fleet::Drift,
+        report::GateResult,
         watch::{Index, Run, RunJoint, Verdict},
     },
 };
@@ -68,6 +69,7 @@ fn summary(index: &Index<'_>, done: &[&Run], failed: &[&Run]) -> Markup {
     html! {
         div class="cards" {
             (card(class, "Verdict", &headline, &html! {
+                @for limit in limits(done) { p { (limit) } }
                 @if kept + broken == 0 {
                     p { "Limits such as " code { "--max-transition-peak-deg 0.5" } " make verdicts." }
                 }
@@ -82,6 +84,23 @@ fn summary(index: &Index<'_>, done: &[&Run], failed: &[&Run]) -> Markup {
             }
         }
     }
+}
+
+/// The limits of the newest run that has some.
+fn limits(done: &[&Run]) -> Vec<String> {
+    let gates = done.iter().map(|run| &run.gates).find(|gates| !gates.is_empty());
+    let said = |gate: &GateResult| {
+        format!("Limit on {}: {}", gate.gate.name, with_unit(gate.gate.dimension, gate.kind(), gate.limit))
+    };
+    gates.into_iter().flatten().map(said).collect()
+}
+
+/// What was found against a limit that is not kept.
+fn over(gate: &GateResult) -> String {
+    let shown = |value: f64| with_unit(gate.gate.dimension, gate.kind(), value);
+    let Some(joint) = &gate.joint else { return "nothing to judge".to_owned() };
+    let worst = gate.worst.map_or(gate.gate.missing.to_owned(), shown);
+    format!("{joint}: {worst}, {} allowed", shown(gate.limit))
 }
 
 fn drift_card(drift: &Drift) -> Markup {
@@ -128,6 +147,7 @@ fn table(runs: &[&Run]) -> Markup {
                             td class=(class(run)) {
                                 @if run.verdict == Verdict::NoLimits { (verdict(run.verdict)) }
                                 @else { span class="mark" { (verdict(run.verdict)) } }
+                                @for gate in run.gates.iter().filter(|gate| !gate.kept) { p { (clean(&over(gate))) } }
                             }
                             td { (clean(run.worst().map_or(NONE, |worst| &worst.joint))) }
                             td class="number" { (run.worst().map_or(NONE.to_owned(), peak)) }
@@ -135,7 +155,7 @@ fn table(runs: &[&Run]) -> Markup {
                                 (delay(run.largest_delay_s))
                                 @if let Some(joint) = run.latest() { " (" (clean(&joint.joint)) ")" }
                             }
-                            td class="number" { (number(run.unanswered_starts)) }
+                            td class={ "number" @if run.unanswered_starts > 0 { " bad" } } { (number(run.unanswered_starts)) }
                             td class="number" { (number(run.remarks)) }
                         }
                     }

@@ -152,6 +152,8 @@ pub(in crate::render) enum Role {
     Error,
     /// Before a change; after it, errors look as measured.
     Before,
+    /// What was sent to the machine: dashed.
+    Command,
     /// Many points.
     Point,
     /// Few points that are named beside them.
@@ -176,6 +178,7 @@ impl Role {
             Self::Measured | Self::Point => RGBColor(0, 98, 166),
             Self::Error | Self::Named => RGBColor(196, 78, 0),
             Self::Before => RGBColor(140, 146, 154),
+            Self::Command => RGBColor(138, 79, 176),
             Self::Guide => RGBColor(160, 165, 171),
             Self::Band => RGBColor(197, 219, 236),
         }
@@ -186,7 +189,7 @@ impl Role {
         match self {
             Self::Planned => 0.8,
             Self::Named => 0.9,
-            Self::Before => 0.4,
+            Self::Before | Self::Command => 0.4,
             Self::Point => 0.45,
             Self::Guide => 0.2,
             Self::Band => 2.0,

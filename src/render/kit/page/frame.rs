@@ -66,7 +66,7 @@ impl Plots {
                     span class="title" { (clean(&chart.title)) }
                     @if !chart.note.is_empty() { span class="note" { (clean(&chart.note)) } }
                     @if !chart.is_tile() { span class="legend" { (legend(&chart)) } }
-                    span class="read" {}
+                    span class="read" aria-live="polite" {}
                 }
                 div class="live" data-chart=(number) {}
                 div class="paper" aria-hidden="true" { (PreEscaped(picture)) }
@@ -101,6 +101,7 @@ fn class(role: Role) -> &'static str {
         Role::Measured => "measured",
         Role::Error => "error",
         Role::Before => "before",
+        Role::Command => "command",
         Role::Point => "point",
         Role::Named => "named",
         Role::Guide => "guide",
