@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use super::{began, delay, peak, verdict};
 use crate::{
     render::{
-        fleet::{days, said},
+        fleet::{chart as level, days, said},
         kit::{
             self, Document, NONE, Section, clean, counted, fact,
             page::{
@@ -20,13 +20,15 @@ use crate::{
     replay::Dimension,
     series::JointKind,
     workflow::{
-        fleet::Drift,
+        fleet::{Drift, JointTrend},
         report::GateResult,
         watch::{Index, Run, RunJoint, Verdict},
     },
 };
 
 const MOST_DRAWN: usize = 120;
+/// Changes of a machine whose levels are drawn.
+const MOST_FOUND: usize = 6;
 /// Runs of a trend that are drawn, the newest.
 const MOST_RUNS: usize = 400;
 
@@ -200,7 +202,7 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
         p class="hint" {
             "Each run of each joint: above its peak error, below its longest dead time in ms, over " (time_unit) " since "
             (dated.last().map_or(NONE.to_owned(), |(run, _)| began(run))) ". A line joins the runs of one plan; those of another differ \
-             without any change of the machine. A drift is told by the same starts of the same plan, from five runs of a machine on."
+             without any change of the machine. A drift is told by the same starts of the same plan, from five runs of a machine on, and drawn above as what these did."
             @if dated.len() < done.len() {
                 " " (counted(done.len() - dated.len(), "run")) " without a date, in stamps or name, not drawn."
             }
@@ -209,7 +211,9 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
         @for (machine, joints) in &machines {
             @if left > 0 {
                 h3 { @if *machine == NONE { "No machine named" } @else { (clean(machine)) } }
-                @for line in drifts(drift, machine) { p { (clean(&line)) } }
+                @let found = drifts(drift, machine);
+                @for trend in &found { p { (clean(&said(trend))) } }
+                div class="side" { @for trend in found.iter().take(MOST_FOUND) { (plots.place(level(trend))) } }
                 div class="tiles" {
                     @for (name, points) in joints.iter().take(left) { (plots.place(chart(*name, points, range))) }
                 }
@@ -219,9 +223,9 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
     }
 }
 
-fn drifts(drift: Option<&Drift>, machine: &str) -> Vec<String> {
-    let trends = drift.iter().flat_map(|drift| &drift.trends);
-    trends.filter(|trend| trend.found && trend.machine == machine).map(said).collect()
+fn drifts<'a>(drift: Option<&'a Drift>, machine: &str) -> Vec<&'a JointTrend> {
+    let trends = drift.into_iter().flat_map(|drift| &drift.trends);
+    trends.filter(|trend| trend.found && trend.machine == machine).collect()
 }
 
 struct Point<'a> {
