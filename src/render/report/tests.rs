@@ -277,7 +277,7 @@ fn a_p_value_is_shown_where_the_verdict_goes_by_it() {
     let page = report_page("a", &report("gaps.mcap"), None, 60, &[]);
     let card = page.split("No clear difference").nth(1).unwrap().split("class=\"card").next().unwrap();
     assert!(
-        card.contains("while the plan moves it is no smaller elsewhere") && !card.contains("p = "),
+        card.contains("while the plan moves the error is no smaller elsewhere") && !card.contains("p = "),
         "{card}"
     );
     assert!(report_page("a", &report("task-1-run.mcap"), None, 60, &[]).contains("p = 0.163"));

@@ -84,7 +84,7 @@ impl<'a> Together<'a> {
         let test = found.test.filter(|test| test.p_value < self.replay.rules.significance)?;
         let inside = test.effect > 0.5 && found.rms_inside > found.rms_outside;
         (found.verdict == Verdict::Undecided).then_some(if inside {
-            "while the plan moves it is no smaller elsewhere: of a motion whose start lies in a gap, or within another start's window, the rest \
+            "while the plan moves the error is no smaller elsewhere: of a motion whose start lies in a gap, or within another start's window, the rest \
              counts there"
         } else {
             "a few large errors and most of the events say the opposite of each other"
