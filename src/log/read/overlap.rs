@@ -70,8 +70,8 @@ pub(super) fn check<'a>(
 
 fn two_runs([a, b]: &[String; 2], apart_s: f64, [a_s, b_s]: [f64; 2]) -> String {
     format!(
-        "{a} ({a_s:.1} s) and {b} ({b_s:.1} s) are {apart_s:.1} s apart, and are read as one run: are they two? `hydrotrace compare` \
-         says what changed from one run to another, `hydrotrace fleet` takes each log of a folder for a run"
+        "{a} ({a_s:.1} s) and {b} ({b_s:.1} s) are {apart_s:.1} s apart, longer than both are, and read as one run; if they are two, \
+         `hydrotrace compare` says what changed between them, and `hydrotrace fleet` takes each log of a folder for a run"
     )
 }
 
