@@ -7,6 +7,7 @@ use maud::{Markup, html};
 use super::{
     signals,
     tables::lag,
+    tiles::waits,
     windows::{EACH, windows},
 };
 use crate::{
@@ -22,7 +23,7 @@ use crate::{
         },
         metric::{on_paper, position, unit},
     },
-    replay::{Answer, Dimension, JointReplay, Replay, Transition},
+    replay::{Dimension, JointReplay, Replay, Transition},
     series::Pair,
     workflow::report::Report,
 };
@@ -106,15 +107,6 @@ fn bands(transition: &Transition) -> Vec<Band> {
     let [from, to] = transition.window_s.map(rounded);
     let waits = waits(transition, from);
     std::iter::once(Band { from, to, shade: Shade::Window }).chain(waits).collect()
-}
-
-/// From an instant of a start until the joint answers, or to the end of its window.
-pub(super) fn waits(start: &Transition, from: f64) -> Option<Band> {
-    let (to_s, shade) = match (start.answer, start.measured_onset_s) {
-        (Answer::Never, _) => (start.window_s[1], Shade::Never),
-        (_, onset_s) => (onset_s?, Shade::Late),
-    };
-    (to_s > from).then(|| Band { from, to: rounded(to_s), shade })
 }
 
 /// Joints with their lags, s.

@@ -2,20 +2,19 @@
 
 use maud::{Markup, html};
 
-use super::joints::waits;
 use crate::{
     render::{
         kit::{
             counted, late,
             page::{
                 Plots, Shows,
-                chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, span, times},
+                chart::{Band, Chart, Panel, Role, Series, Shade, Size, at, rounded, span, times},
                 envelope::envelope,
             },
         },
         metric::{number, on_paper, position, unit},
     },
-    replay::{Dimension, Transition},
+    replay::{Answer, Dimension, Transition},
     series::{JointKind, Pair},
     workflow::report::Report,
 };
@@ -129,4 +128,13 @@ pub(super) fn tile(transition: &Transition, pair: &Pair, [before_s, after_s]: [f
         height: 150,
         size: Size::Tile,
     }
+}
+
+/// From an instant of a start until the joint answers, or to the end of its window.
+pub(super) fn waits(start: &Transition, from: f64) -> Option<Band> {
+    let (to_s, shade) = match (start.answer, start.measured_onset_s) {
+        (Answer::Never, _) => (start.window_s[1], Shade::Never),
+        (_, onset_s) => (onset_s?, Shade::Late),
+    };
+    (to_s > from).then(|| Band { from, to: rounded(to_s), shade })
 }
