@@ -286,11 +286,11 @@ mod tests {
         let compared = |after: &str| {
             run(&Inputs { before: log("task-1-run.mcap"), after: log(after), ..Inputs::default() }).unwrap()
         };
-        assert!(!page(&compared("task-1-run.mcap"), 60).contains("Nothing changed"));
+        assert!(!page(&compared("task-1-run.mcap"), 60, [&[], &[]], &[]).contains("Nothing changed"));
         let mut other = compared("precompensated-run.mcap");
         other.pairs.clear();
         other.same_plan = false;
-        let page = page(&other, 60);
+        let page = page(&other, 60, [&[], &[]], &[]);
         assert!(page.contains("Not comparable") && !page.contains("Rms error, whole run"));
     }
 }
