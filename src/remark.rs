@@ -96,6 +96,8 @@ pub enum Code {
     InactiveBound,
     /// Limits that are judged between runs of different plans.
     OtherPlan,
+    /// Files that look like a run each, read as one.
+    SeveralRuns,
     /// Both sides of a comparison, or plan and measurement, are one.
     SameRun,
     /// What was sent to the machine is not what was made to be sent.
@@ -126,7 +128,7 @@ impl Code {
     /// How little it says of the run, 0 to 3.
     fn lightness(self) -> u8 {
         match self {
-            Self::OtherTime | Self::Stopped => 0,
+            Self::OtherTime | Self::SeveralRuns | Self::Stopped => 0,
             Self::BeforePlan
             | Self::FrozenSensor
             | Self::Implausible

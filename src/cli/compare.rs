@@ -155,7 +155,9 @@ impl Run for Args {
         let most = MOST.map(|most| if self.all { usize::MAX } else { most });
         let result = match target.form {
             Form::Json => pretty(&comparison),
-            Form::Html => words::page(&comparison, most[1]),
+            Form::Html => {
+                words::page(&comparison, most[1], [&request.before, &request.after], &self.read.words())
+            }
             _ => target.text(&words::document(&comparison, most[0])),
         };
         self.figures.write(console, &target, || words::figures(&comparison))?;

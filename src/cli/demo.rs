@@ -75,7 +75,9 @@ impl Run for Args {
         let words = ["compare", RUN, NEXT_RUN];
         say(&words);
         let comparison = compare_runs(&made::<compare::Args>(dir, &words)?.request())?;
-        write_file(&dir.join(PAGE), compare_page(&comparison, compare::MOST[1]).as_bytes())?;
+        let logs = [RUN, NEXT_RUN].map(PathBuf::from);
+        let page = compare_page(&comparison, compare::MOST[1], [&logs[..1], &logs[1..]], &[]);
+        write_file(&dir.join(PAGE), page.as_bytes())?;
         bar.finish_and_clear();
 
         console.show(&document(&Story {

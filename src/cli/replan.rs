@@ -17,7 +17,7 @@ use super::{
 use crate::{
     fit::Learning,
     render::{kit, next, replan as words},
-    workflow::replan::{Checks, Commanded, Inputs, ReplanDocument, Replanned, Verdict, run},
+    workflow::replan::{Checks, Commanded, Inputs, ReplanDocument, Replanned, run},
 };
 
 const EXAMPLES: &str = "\
@@ -198,20 +198,17 @@ impl Run for Args {
         let target = Target::stdout(self.json);
         let (reading, changing) =
             (self.sent.words_of_next(), self.change.words_of_next(self.limits.as_deref()));
+        let again = again(std::env::args_os().skip(1));
+        let lines = next::Words { again: &again, reading: &reading, changing: &changing };
+        let half = Checks::of(&replanned).half_first();
         if let Some(file) = &self.html {
-            let again = again(std::env::args_os().skip(1));
-            // Half of what is not to be sent is not to be sent.
-            let whole = replanned.command.as_ref().is_some_and(Commanded::applied)
-                && !replanned.past.careful()
-                && Checks::of(&replanned).verdict != Verdict::DoNotSend;
-            let words = (again.as_slice(), reading.as_slice(), changing.as_slice());
-            let sending = next::to_send(self.output.as_deref(), &self.logs, words, whole);
+            let sending = next::to_send(self.output.as_deref(), &self.logs, &lines, half);
             write_file(file, words::page(&replanned, &sending).as_bytes())?;
         }
         let result = match &self.output {
             _ if self.json => ReplanDocument::of(&replanned).json(),
             Some(path) => {
-                let next = next::next_written(path, &self.logs, (&reading, &changing));
+                let next = next::next_written(path, &self.logs, &lines, half);
                 target.text(&words::document(&replanned).with_above_remarks(next))
             }
             None => target.text(&words::document(&replanned)),

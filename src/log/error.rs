@@ -117,7 +117,7 @@ pub enum LogError {
     ToldTwice { topic: String, files: [String; 2], shared_s: f64 },
     #[error(
         "{} and {} are {:.1} hours apart in {topic}: they are not of one run; give the files of one run, `hydrotrace compare` two runs, \
-         or put the plan of one into the other with `hydrotrace join`",
+         `hydrotrace fleet` many, or put the plan of one into the other with `hydrotrace join`",
         files[0],
         files[1],
         apart_s / 3600.0

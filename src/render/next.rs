@@ -65,40 +65,42 @@ pub(crate) fn limits_written(
     step(written, aim, &[&again[..], &["--gain", "0.5", "-o", "next.mcap"]].concat())
 }
 
-/// After `replan` of these logs, read by these options; `changing` are its options of what may change.
-pub(crate) fn next_written(
-    next: &Path,
-    logs: &[PathBuf],
-    (reading, changing): (&[String], &[String]),
-) -> Section {
-    let next = argument(next);
-    after_run(written(&next), &next, logs, (reading, changing)).reading(reading)
+/// Command lines of a `replan`, in parts.
+pub(crate) struct Words<'a> {
+    /// Those of the line itself, without what says how much is sent and where it goes.
+    pub(crate) again: &'a [String],
+    /// Options by which the logs were read.
+    pub(crate) reading: &'a [String],
+    /// Options of what may change.
+    pub(crate) changing: &'a [String],
 }
 
-/// What to type before and after a run; `again` are words of `replan` that make the same command anew, and `whole` says that more
-/// than half of the correction was asked for. `reading` are options by which the logs were read, `changing` those of what may change.
-pub(crate) fn to_send(
-    next: Option<&Path>,
-    logs: &[PathBuf],
-    (again, reading, changing): (&[String], &[String], &[String]),
-    whole: bool,
-) -> Section {
-    let with = |section, aim, more: [&str; 4]| {
-        let words: Vec<&str> =
-            again.iter().map(String::as_str).chain(more).filter(|word| !word.is_empty()).collect();
-        step(section, aim, &words)
+/// What to type before and after a run. Where half of a correction is to go first, `half`, it is made first, and all lines after
+/// it are of that command.
+pub(crate) fn to_send(next: Option<&Path>, logs: &[PathBuf], words: &Words, half: bool) -> Section {
+    let made = |aim, more: &[&str]| {
+        let none = Section::new(Id::NEXT, "Commands", std::iter::empty::<Block>());
+        let words: Vec<&str> = words.again.iter().map(String::as_str).chain(more.iter().copied()).collect();
+        step(none, aim, &words)
     };
-    let none = || Section::new(Id::NEXT, "Commands", std::iter::empty::<Block>());
-    let after = |next: &str| after_run(none(), next, logs, (reading, changing)).reading(reading).blocks;
-    let section = none();
-    let careful = "To send half of the correction first, the careful step:";
-    let section =
-        if whole { with(section, careful, ["--gain", "0.5", "-o", "careful.mcap"]) } else { section };
-    let Some(next) = next else {
-        let section = with(section, "To write plan and command to a file:", ["", "", "-o", "next.mcap"]);
-        return section.with_all(after("next.mcap"));
+    let named = next.map(argument);
+    let (section, next) = match named {
+        named if half => {
+            let careful = unused("careful", 1, logs, named.as_deref().unwrap_or_default());
+            let aim = "To send half of the correction first, the careful step:";
+            (made(aim, &["--gain", "0.5", "-o", &careful]), careful)
+        }
+        Some(named) => (Section::new(Id::NEXT, "Commands", std::iter::empty::<Block>()), named),
+        None => (made("To write plan and command to a file:", &["-o", "next.mcap"]), "next.mcap".to_owned()),
     };
-    section.with_all(after(&argument(next)))
+    let none = Section::plain(Id::NEXT, std::iter::empty::<Block>());
+    let after = after_run(none, &next, logs, (words.reading, words.changing)).reading(words.reading);
+    section.with_all(after.blocks)
+}
+
+/// The same below a result that was written to a file.
+pub(crate) fn next_written(next: &Path, logs: &[PathBuf], words: &Words, half: bool) -> Section {
+    written(&argument(next)).with_all(to_send(Some(next), logs, words, half).blocks)
 }
 
 fn after_run(
@@ -171,19 +173,26 @@ mod tests {
 
     #[test]
     fn no_printed_line_names_a_file_of_another_line() {
-        let said = |next: &str, logs: &[&str]| -> Vec<String> {
+        let said = |next: &str, logs: &[&str], half: bool| -> Vec<String> {
             let logs: Vec<PathBuf> = logs.iter().map(PathBuf::from).collect();
-            let lines = next_written(Path::new(next), &logs, (&[], &[])).blocks.into_iter();
+            let words = Words { again: &["replan".to_owned()], reading: &[], changing: &[] };
+            let lines = next_written(Path::new(next), &logs, &words, half).blocks.into_iter();
             lines
                 .filter_map(|block| if let Block::Command(line) = block { Some(line) } else { None })
                 .collect()
         };
-        let first = said("next.mcap", &["run.mcap"]);
+        let first = said("next.mcap", &["run.mcap"], false);
         assert_eq!(first[1], "hydrotrace compare run.mcap after.mcap");
-        let second = said("next-2.mcap", &["run.mcap", "after.mcap"]);
+        let second = said("next-2.mcap", &["run.mcap", "after.mcap"], false);
         assert_eq!(second[0], "hydrotrace join RUN.mcap --plan next-2.mcap -o after-2.mcap");
         assert_eq!(second[1], "hydrotrace compare after.mcap after-2.mcap");
         assert_eq!(second[2], "hydrotrace replan run.mcap after.mcap after-2.mcap -o next-3.mcap");
-        assert!(said("next-2.mcap", &["run.mcap"])[2].ends_with("-o next-3.mcap"));
+        assert!(said("next-2.mcap", &["run.mcap"], false)[2].ends_with("-o next-3.mcap"));
+        let half = said("next.mcap", &["run.mcap"], true);
+        assert_eq!(half[0], "hydrotrace replan --gain 0.5 -o careful.mcap");
+        assert!(
+            half[1].contains("--plan careful.mcap ") && !half[1..].join(" ").contains(" next.mcap"),
+            "{half:?}"
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! What each joint does over a run, for one glance: it waits, follows or settles.
+//! What each joint does over a run, for one glance: it waits, in vain or not, follows or settles.
 
 use super::{Answer, Kind, Replay, Stop, Transition};
 
@@ -7,6 +7,8 @@ use super::{Answer, Kind, Replay, Stop, Transition};
 pub enum Phase {
     /// The plan has left rest, the joint has not.
     Waits,
+    /// The same, and the joint never does.
+    Never,
     /// Plan and joint move.
     Follows,
     /// The plan is at rest again, the joint is not.
@@ -72,8 +74,9 @@ fn between(found: &Replay, joint: &str, [begin_s, end_s]: [f64; 2]) -> Vec<Stret
             start.answer == Answer::Timed
                 || start.answer != Answer::Never && stop.is_some_and(|stop| stop.measured_s.is_some())
         });
+        let waits = if start.answer == Answer::Never { Phase::Never } else { Phase::Waits };
         let ends = [
-            (Phase::Waits, from_s, answers_s),
+            (waits, from_s, answers_s),
             (Phase::Follows, answers_s, moves_to_s),
             (Phase::Settles, moves_to_s.max(answers_s), settled_s.unwrap_or(moves_to_s).min(next_s)),
         ];
@@ -158,9 +161,9 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_that_never_answers_waits_as_long_as_its_plan_moves() {
+    fn a_joint_that_never_answers_is_told_for_as_long_as_its_plan_moves() {
         let found = run(&[1.0], &[], 8.0);
-        assert_is(&lane(&found, "boom", &[[0.0, 10.0]]), &[(Phase::Waits, 1.0, 3.0)]);
+        assert_is(&lane(&found, "boom", &[[0.0, 10.0]]), &[(Phase::Never, 1.0, 3.0)]);
     }
 
     #[test]

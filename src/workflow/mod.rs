@@ -2,6 +2,7 @@
 
 pub mod carried;
 pub mod compare;
+mod correctable;
 pub mod excite;
 pub mod export;
 pub mod fit;

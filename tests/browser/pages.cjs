@@ -179,15 +179,15 @@ async function tools(page, where) {
   }
 }
 
-// A report answers on its first screen: lanes by joint, the line to type; a lane and a row show their place, which the address keeps.
+// A report answers on its first screen: the cards, the lines to type, below them lanes by joint; a lane and a row show their place, which the address keeps.
 async function first(page, where, width) {
   const lanes = page.locator('.lanes rect[data-from]');
   if (await lanes.count() === 0) return;
   if (width > 1000) {
-    const last = await page.locator('.lanes tbody tr').last().boundingBox();
     await page.evaluate(() => scrollTo(0, 0));
-    const top = await page.locator('.lanes').boundingBox();
-    check(top.y + last.height < 900, where, `the lanes begin at ${top.y} px`);
+    const next = await page.locator('.next').boundingBox(), top = await page.locator('.lanes').first().boundingBox();
+    check(next.y + next.height < 900, where, `what to do next ends at ${next.y + next.height} px`);
+    check(top.y > next.y && top.y < next.y + next.height + 200, where, `the lanes begin at ${top.y} px`);
   }
   const plot = page.locator('.joint canvas').first();
   const range = () => plot.evaluate(c => c.dataset.range);

@@ -43,7 +43,7 @@ pub(super) fn assemble(
     // A side that was not asked for, or need not be there, is no doubt.
     let alone = (choice.planned.is_empty() || choice.measured.is_empty()).then(|| remarks.clone());
     let (base, base_why) = time_base(&extracted, choice, options.time_base, &mut remarks)?;
-    overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?;
+    remarks.extend(overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?);
     let plan_is_command = remark_choice(choice, options, &extracted.tables, &mut remarks);
     // Where they are the arm's, joints called x, y and z are no pose.
     let axes_slide = kinds.learn_sliding(options, &extracted);

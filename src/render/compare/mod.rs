@@ -3,6 +3,7 @@
 mod figures;
 mod page;
 mod short;
+mod steps;
 mod tables;
 
 pub(crate) use figures::figures;

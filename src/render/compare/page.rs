@@ -1,10 +1,13 @@
 //! The page of a comparison.
 
+use std::path::PathBuf;
+
 use maud::{Markup, html};
 
 use super::{
     kind, scope,
     short::{plans, verdicts},
+    steps::steps,
     tables::document,
     together, together_name,
 };
@@ -16,7 +19,7 @@ use crate::{
                 Chapter, Plots, card,
                 chart::{Chart, Panel, Role, Series, at, rounded, span, times},
                 envelope::envelope,
-                headed,
+                headed, next_steps,
                 strip::{Row, intervals},
                 verdict,
             },
@@ -33,12 +36,15 @@ use crate::{
 const MOST: usize = 4000;
 
 /// What a change did, as one page; `most` is how many pairs its table lists.
-pub(crate) fn page(comparison: &Comparison, most: usize) -> String {
+///
+/// `logs` are those of both sides as the caller named them, `read` the options with which they were read.
+pub(crate) fn page(comparison: &Comparison, most: usize, logs: [&[PathBuf]; 2], read: &[String]) -> String {
     let document = document(comparison, most);
     let apart = [Id::REMARKS, Id::METHOD];
     let numbers = document.sections.iter().filter(|section| !apart.contains(&section.id));
     let mut plots = Plots::default();
-    let mut chapters = vec![Chapter { id: "summary", heading: "In short", body: summary(comparison) }];
+    let mut chapters =
+        vec![Chapter { id: "summary", heading: "In short", body: summary(comparison, logs, read) }];
     if comparison.idle() != Some(Idle::NoPair) {
         chapters.extend([
             Chapter { id: "pairs", heading: "Every transition", body: scatters(comparison, &mut plots) },
@@ -52,7 +58,7 @@ pub(crate) fn page(comparison: &Comparison, most: usize) -> String {
     kit::page::page("comparison", &document, &chapters, &plots)
 }
 
-fn summary(comparison: &Comparison) -> Markup {
+fn summary(comparison: &Comparison, logs: [&[PathBuf]; 2], read: &[String]) -> Markup {
     let kept: Vec<bool> = comparison.gates.iter().map(|gate| gate.kept).collect();
     let lines: Vec<String> = verdicts(comparison).iter().map(Sentence::to_string).collect();
     if let Some(idle) = comparison.idle() {
@@ -67,7 +73,10 @@ fn summary(comparison: &Comparison) -> Markup {
             }
         };
         let body = html! { p { (clean(&why)) } p { a href="#remarks" { "Remarks on the data" } } };
-        return html! { div class="cards" { (card("care", "Peak error at transitions", headline, &body)) (verdict(&kept, &lines)) } };
+        return html! {
+            div class="cards" { (card("care", "Peak error at transitions", headline, &body)) (verdict(&kept, &lines)) }
+            (next_steps(&steps(comparison, logs, read)))
+        };
     }
     html! {
         div class="cards" {
@@ -76,6 +85,7 @@ fn summary(comparison: &Comparison) -> Markup {
             @for all in together(comparison) { (whole_run(all)) }
             (at_the_tool(comparison))
         }
+        (next_steps(&steps(comparison, logs, read)))
         h3 { "Mean change of the peak error, with its 95 % interval" }
         @for all in together(comparison) { (intervals(&change_rows(comparison, all.kind))) }
     }
@@ -276,11 +286,11 @@ mod tests {
         let compared = |after: &str| {
             run(&Inputs { before: log("task-1-run.mcap"), after: log(after), ..Inputs::default() }).unwrap()
         };
-        assert!(!page(&compared("task-1-run.mcap"), 60).contains("Nothing changed"));
+        assert!(!page(&compared("task-1-run.mcap"), 60, [&[], &[]], &[]).contains("Nothing changed"));
         let mut other = compared("precompensated-run.mcap");
         other.pairs.clear();
         other.same_plan = false;
-        let page = page(&other, 60);
+        let page = page(&other, 60, [&[], &[]], &[]);
         assert!(page.contains("Not comparable") && !page.contains("Rms error, whole run"));
     }
 }

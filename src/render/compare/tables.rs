@@ -61,11 +61,11 @@ fn pairs(comparison: &Comparison, most: usize) -> Option<Section> {
     worst.sort_by(|a, b| growth(b).total_cmp(&growth(a)));
     let units = Units::of(worst.iter().map(|pair| pair.joint_kind));
     let mut columns: Vec<Column> = ["joint", "kind", "dir"].map(Column::words).into();
-    columns.extend(["at s", "after"].map(Column::numbers));
+    columns.extend([Column::numbers("at s"), Column::numbers("after").going_on()]);
     for metric in Metric::<Transition>::rows() {
         let heading = units.heading(metric.heading, metric.dimension);
         columns.push(Column::numbers(heading).meaning(metric.explanation));
-        columns.extend(["after", "change"].map(Column::numbers));
+        columns.extend(["after", "change"].map(|heading| Column::numbers(heading).going_on()));
     }
     let rows = worst.iter().take(most).map(|pair| {
         let mut row = vec![
@@ -107,7 +107,9 @@ fn summary(comparison: &Comparison, metric: &Metric<Transition>) -> Option<Secti
     let first = [Column::words("transitions"), Column::numbers(before).meaning(metric.explanation)];
     let others =
         ["after", "change", "95 %", "median", "%", "p", "verdict", "pairs", "events", "smaller", "larger"];
-    let columns = first.into_iter().chain(others.map(Column::numbers));
+    let goes_on = |heading| ["after", "change", "95 %"].contains(&heading);
+    let other = |heading: &'static str| Column { goes_on: goes_on(heading), ..Column::numbers(heading) };
+    let columns = first.into_iter().chain(others.map(other));
     let rows: Vec<Vec<String>> = of.iter().map(|summary| summary_row(comparison, summary, units)).collect();
     let some = !rows.is_empty();
     let title = format!("Change of the {} at transitions", metric.name);
@@ -142,7 +144,7 @@ fn figures_table(figures: &[Figures]) -> Table {
     let metrics = figures.first().into_iter().flat_map(|f| f.changes.iter()).flat_map(|(metric, _)| {
         let heading = if metric.heading.is_empty() { metric.name } else { metric.heading };
         let column = Column::numbers(units.heading(heading, metric.dimension)).meaning(metric.explanation);
-        let ratio = || Column::numbers("ratio").meaning("After divided by before.");
+        let ratio = || Column::numbers("ratio").meaning("After divided by before.").going_on();
         std::iter::once(column).chain(has_ratio(metric.key).then(ratio))
     });
     let rows = figures.iter().map(|f| {

@@ -7,7 +7,7 @@ mod page;
 pub(in crate::render) use answers::said;
 pub(crate) use answers::{drift, effect, gate, gate_verdicts, worst};
 pub(crate) use csv::{drift_csv, effect_csv, worst_csv};
-pub(in crate::render) use page::days;
+pub(in crate::render) use page::{chart, days};
 pub(crate) use page::{drift_page, effect_page, worst_page};
 
 use std::path::Path;

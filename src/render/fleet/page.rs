@@ -196,7 +196,8 @@ fn encoded(path: &str) -> String {
     path.bytes().map(letter).collect()
 }
 
-fn chart(trend: &JointTrend) -> Chart {
+/// The levels that a change was found in.
+pub(in crate::render) fn chart(trend: &JointTrend) -> Chart {
     let unit = &trend.unit;
     let scale = match shown_unit(unit) {
         "deg" => 1f64.to_degrees(),

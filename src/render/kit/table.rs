@@ -11,6 +11,8 @@ pub struct Column {
     pub align: Align,
     /// A sentence on what it holds, shown where a page is pointed at; empty if the heading says it all.
     pub meaning: &'static str,
+    /// Whether its heading goes on from that of the column before it: nothing parts them.
+    pub goes_on: bool,
 }
 
 /// To which side cells go.
@@ -25,12 +27,17 @@ pub enum Align {
 impl Column {
     /// Of words.
     pub fn words(heading: impl Into<Cow<'static, str>>) -> Self {
-        Self { heading: heading.into(), align: Align::Left, meaning: "" }
+        Self { heading: heading.into(), align: Align::Left, meaning: "", goes_on: false }
     }
 
     /// Of numbers.
     pub fn numbers(heading: impl Into<Cow<'static, str>>) -> Self {
         Self { align: Align::Right, ..Self::words(heading) }
+    }
+
+    /// With a heading that goes on from that of the column before.
+    pub fn going_on(self) -> Self {
+        Self { goes_on: true, ..self }
     }
 
     /// With what it holds.

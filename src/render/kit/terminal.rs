@@ -23,7 +23,11 @@ pub(crate) fn shown(document: &Document, style: TerminalStyle) -> String {
             let gap = if out.is_empty() { "" } else { "\n" };
             let _ = writeln!(out, "{gap}{}", style.strong(&clean(heading).to_uppercase()));
         }
-        for block in &section.blocks {
+        for (k, block) in section.blocks.iter().enumerate() {
+            let before = k.checked_sub(1).and_then(|before| section.blocks.get(before));
+            if let (Some(Block::Table(_)), Block::Table(_)) = (before, block) {
+                out.push('\n');
+            }
             match block {
                 Block::Sentence(text) => {
                     let _ = writeln!(out, "{}", style.folded("", &sentence(text, style), 0));

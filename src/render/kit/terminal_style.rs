@@ -72,15 +72,18 @@ impl TerminalStyle {
         let Some(most) = self.width else { return vec![table.clone()] };
         let (keys, widths) = (keys(table), widths(table));
         let wide = |columns: &[usize]| -> usize { columns.iter().map(|k| widths[*k] + GAP.len()).sum() };
+        let goes_on = |k: &usize| table.columns.get(*k).is_some_and(|column| column.goes_on);
+        let all: Vec<usize> = (0..widths.len()).collect();
         let mut blocks: Vec<Vec<usize>> = vec![Vec::new()];
-        for (k, width) in widths.iter().enumerate() {
+        for group in all.chunk_by(|_, k| goes_on(k)) {
             let Some(block) = blocks.last_mut() else { break };
-            let full = wide(block) + width > most;
+            let full = wide(block) + wide(group) > most + GAP.len();
             if full && block.iter().any(|column| !keys.contains(column)) {
                 blocks.push(keys.clone());
             }
-            if let Some(block) = blocks.last_mut().filter(|block| !block.contains(&k)) {
-                block.push(k);
+            if let Some(block) = blocks.last_mut() {
+                let more: Vec<usize> = group.iter().filter(|k| !block.contains(k)).copied().collect();
+                block.extend(more);
             }
         }
         blocks.iter().map(|columns| table.part(columns)).collect()
@@ -106,7 +109,7 @@ fn keys(table: &Table) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::kit::{Block, Document, Fact, Id, Section, fact, shown, text};
+    use crate::render::kit::{Block, Column, Document, Fact, Id, Section, fact, shown, text};
 
     fn table() -> Block {
         let rows = [["a", "0.5", "3.25"].map(str::to_owned).to_vec()];
@@ -166,5 +169,22 @@ mod tests {
         let of = |width| shown(&document([table()]), TerminalStyle { coloured: false, width: Some(width) });
         assert_eq!(of(16), "joint  peak deg\na           0.5\n\njoint  at s\na      3.25\n");
         assert_eq!(of(21), "joint  peak deg  at s\na           0.5  3.25\n");
+        assert_eq!(shown(&document([table(), table()]), TerminalStyle::default()).lines().nth(2), Some(""));
+    }
+
+    #[test]
+    fn a_heading_that_goes_on_is_not_parted_from_its_own() {
+        let columns = ["joint", "peak deg", "rms deg", "after"].map(Column::numbers);
+        let columns =
+            columns.map(|column| if column.heading == "after" { column.going_on() } else { column });
+        let rows = [["a", "0.5", "3.25", "4.25"].map(str::to_owned).to_vec()];
+        let shown = shown(
+            &document([Table::of(columns, rows).into()]),
+            TerminalStyle { coloured: false, width: Some(24) },
+        );
+        assert_eq!(
+            shown,
+            "joint  peak deg\n    a       0.5\n\njoint  rms deg  after\n    a     3.25   4.25\n"
+        );
     }
 }

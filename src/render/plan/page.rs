@@ -89,12 +89,21 @@ fn summary(planned: &Planned, of_sample_arm: bool) -> Markup {
         div class="cards" {
             (limits(&planned.chosen, &planned.joints))
             (cost("Chosen", &planned.chosen))
-            @for (objective, plan) in Objective::OF_PLAN.iter().zip(&planned.best) {
-                (cost(&format!("{}, {}", objective.letter(), objective.row().best), plan))
+            @for same in best(planned).chunk_by(|a, b| a.1.times_s == b.1.times_s && a.1.via == b.1.via) {
+                (cost(&same.iter().map(|one| one.0.as_str()).collect::<Vec<_>>().join("; "), same[0].1))
             }
         }
         (next_steps(&next(planned, of_sample_arm)))
     }
+}
+
+/// The best plan of each objective, with what it is called.
+fn best(planned: &Planned) -> Vec<(String, &PlanEvaluation)> {
+    let named = |(objective, plan)| {
+        let objective: &Objective = objective;
+        (format!("{}, {}", objective.letter(), objective.row().best), plan)
+    };
+    Objective::OF_PLAN.iter().zip(&planned.best).map(named).collect()
 }
 
 /// Angle and speed of each joint over time, and the way of the tool.

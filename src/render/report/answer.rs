@@ -3,7 +3,7 @@
 use super::{
     method::method,
     resting::at_rest,
-    steps::{LEARNT, named, replanned, told, without, words},
+    steps::{LEARNT, fitted, named, replanned, told, without, words},
     tables::{self, saturates, stray, verdicts},
     together::Together,
     tool, why,
@@ -20,7 +20,7 @@ use crate::{
     },
     replay::{JointReplay, Replay, Transition},
     workflow::report::{
-        Report,
+        Report, Uncorrectable,
         advice::{Advice, advice},
     },
 };
@@ -190,10 +190,11 @@ fn next(report: &Report) -> (String, Vec<String>) {
             let made = "To make a command that compensates what this run shows, at half strength first";
             (format!("{}:", if learns { LEARNT } else { made }), of_one(replanned(&log, learns)))
         }
-        Some(Advice::EaseStarts { fits: true, .. } | Advice::ShiftCommand { fits: true, .. }) => (
-            "To learn lag, dead band and limits of the machine from it:".to_owned(),
-            of_one(command(&["fit", &log, "-o", "limits.toml"])),
-        ),
+        Some(
+            Advice::EaseStarts { fits: true, .. }
+            | Advice::ShiftCommand { fits: true, .. }
+            | Advice::NotCorrected { why: Uncorrectable::Identifies, fits: true },
+        ) => ("To learn lag, dead band and limits of the machine from it:".to_owned(), of_one(fitted(&log))),
         Some(Advice::RecordStarts) => (
             "To see what the log holds:".to_owned(),
             vec![command(&["info", &report.paths.first().map(argument).unwrap_or_default()])],

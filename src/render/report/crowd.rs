@@ -13,6 +13,9 @@ use crate::{
 /// Thousandths of the run, and the height of a lane: the drawing is stretched, so it holds no text.
 pub(super) const WIDTH: f64 = 1000.0;
 pub(super) const HEIGHT: f64 = 30.0;
+/// Below it, the strip of waits: where it begins and how high it is, and how wide a wait is at least.
+const STRIP: [f64; 2] = [31.0, 5.0];
+const LEAST: f64 = 3.0;
 /// More stretches than this are a crowd.
 pub(super) const CROWD: usize = 250;
 /// Columns, and how many of them a click shows.
@@ -23,16 +26,22 @@ const SHOWN: usize = 4;
 pub(super) fn class(phase: Phase) -> &'static str {
     match phase {
         Phase::Waits => "waits",
+        Phase::Never => "never",
         Phase::Follows => "follows",
         Phase::Settles => "settles",
     }
+}
+
+/// The same in a sentence.
+pub(super) fn word(phase: Phase) -> &'static str {
+    if phase == Phase::Never { "never answered" } else { class(phase) }
 }
 
 /// The stretches of a joint as shares of columns of equal time.
 pub(super) fn crowd(stretches: &[Stretch], joint: &str, [from_s, to_s]: [f64; 2]) -> Markup {
     let each_s = (to_s - from_s) / COLUMNS as f64;
     let mut below = [0.0; COLUMNS];
-    let phases = [Phase::Waits, Phase::Settles, Phase::Follows].map(|phase| {
+    let phases = [Phase::Never, Phase::Waits, Phase::Settles, Phase::Follows].map(|phase| {
         let shares = shares(stretches.iter().filter(|one| one.phase == phase), from_s, each_s);
         (class(phase), path(&shares, &mut below))
     });
@@ -44,6 +53,32 @@ pub(super) fn crowd(stretches: &[Stretch], joint: &str, [from_s, to_s]: [f64; 2]
             @let shows = Shows::around(joint, [column_s(k), column_s(k + SHOWN)]);
             rect class="any" x=(format!("{:.1}", wide * k as f64)) y="0" height=(HEIGHT) width=(format!("{:.1}", wide * SHOWN as f64))
                 data-from=(shows.from) data-to=(shows.to) data-joint=(shows.joint) {}
+        }
+    }
+}
+
+/// Where a joint waits, however shortly: a strip below the lane.
+pub(super) fn waits(stretches: &[Stretch], [from_s, to_s]: [f64; 2]) -> Markup {
+    let place = |s: f64| ((s - from_s) / (to_s - from_s) * WIDTH).clamp(0.0, WIDTH);
+    let strip = |phase: Phase| {
+        let mut path = String::new();
+        let mut end = f64::NEG_INFINITY;
+        for one in stretches.iter().filter(|one| one.phase == phase) {
+            let from = place(one.from_s).min(WIDTH - LEAST);
+            let to = place(one.to_s).max(from + LEAST);
+            // A crowd runs together.
+            if to > end {
+                let [top, high] = STRIP;
+                let _ = write!(path, "M{:.1} {top}v{high}H{to:.1}v-{high}z", from.max(end));
+                end = to;
+            }
+        }
+        path
+    };
+    html! {
+        @for phase in [Phase::Waits, Phase::Never] {
+            @let path = strip(phase);
+            @if !path.is_empty() { path class=(class(phase)) d=(path) {} }
         }
     }
 }
@@ -77,6 +112,19 @@ fn path(shares: &[f64; COLUMNS], below: &mut [f64; COLUMNS]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_short_wait_of_a_long_run_is_as_wide_as_can_be_seen() {
+        let stretch = |phase, from_s, to_s| Stretch { phase, from_s, to_s };
+        let all = [
+            stretch(Phase::Waits, 100.0, 100.3),
+            stretch(Phase::Waits, 101.0, 101.3),
+            stretch(Phase::Never, 3599.9, 3600.0),
+        ];
+        let strips = waits(&all, [0.0, 3600.0]).into_string();
+        assert!(strips.contains("class=\"waits\" d=\"M27.8 31v5H30.8v-5zM30.8 31v5H31.1v-5z\""), "{strips}");
+        assert!(strips.contains("class=\"never\" d=\"M997.0 31v5H1000.0v-5z\""), "{strips}");
+    }
 
     #[test]
     fn shares_of_columns_are_those_of_the_time() {

@@ -7,6 +7,7 @@ use maud::{Markup, html};
 use super::{
     signals,
     tables::lag,
+    tiles::waits,
     windows::{EACH, windows},
 };
 use crate::{
@@ -15,7 +16,7 @@ use crate::{
             clean, ms,
             page::{
                 Plots,
-                chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, times},
+                chart::{Band, Chart, Panel, Role, Series, Shade, Size, at, rounded, times},
                 envelope::with_parts,
                 strip::{Row, intervals},
             },
@@ -101,12 +102,11 @@ fn left_out(drawn: usize, all: usize) -> String {
     if drawn < all { said() } else { String::new() }
 }
 
-/// The window of a transition, and in it the time until the joint answers.
+/// The window of a transition, and in it the time until the joint answers: all of it where it never does.
 fn bands(transition: &Transition) -> Vec<Band> {
     let [from, to] = transition.window_s.map(rounded);
-    let late =
-        transition.measured_onset_s.filter(|s| *s > from).map(|s| Band { from, to: rounded(s), late: true });
-    std::iter::once(Band { from, to, late: false }).chain(late).collect()
+    let waits = waits(transition, from);
+    std::iter::once(Band { from, to, shade: Shade::Window }).chain(waits).collect()
 }
 
 /// Joints with their lags, s.

@@ -27,7 +27,9 @@ const BAR_PA: f64 = 1e5;
 /// Adds what the report holds of the joint to its plot.
 pub(super) fn add(chart: &mut Chart, report: &Report, pair: &Pair) {
     if let Some(series) = command(chart, report, pair) {
-        chart.panels[0].series.push(series);
+        // Below what was measured.
+        let panel = &mut chart.panels[0].series;
+        panel.insert(panel.len().min(1), series);
     }
     let speed = speed(chart, report, pair, View::ALL, SHARE);
     let valve = [(SignalRole::Valve, "valve", Role::Measured)];
@@ -67,7 +69,7 @@ fn command(chart: &mut Chart, report: &Report, pair: &Pair) -> Option<Series> {
     let places = envelope(track.segments(), &[track.position()], MOST);
     let x = coordinates(chart, track.t_s(), &places);
     let sent = at(track.position(), &places).map(|value| on_paper(pair.kind, value));
-    Some(series("command", Role::Before, x, sent))
+    Some(series("command", Role::Command, x, sent))
 }
 
 /// What of a joint's samples is drawn: times from an instant on, in the direction of a motion.

@@ -8,7 +8,7 @@ use crate::{
     },
     series::JointKind,
     workflow::report::{
-        Fault, Leaves, Report,
+        Fault, Leaves, Report, Uncorrectable,
         advice::{Advice, advice},
     },
 };
@@ -43,6 +43,10 @@ fn lines(step: &Advice, report: &Report, limit: [&str; 2], learns: bool) -> Vec<
         }
         Advice::SetLimits => return vec![command(&["report", &named(report), limit[0], limit[1]])],
         Advice::SeeTo(fault @ Fault::Stopped { .. }) => return vec![without(fault, report)],
+        Advice::NotCorrected { why: Uncorrectable::Wraps { joint, .. }, .. } => {
+            return vec![command(&["report", &named(report), "--continuous", &argument(joint)])];
+        }
+        Advice::NotCorrected { fits: true, .. } => fitted(&log),
         Advice::Compare => command(&["compare", &log, "NEXT_RUN"]),
         _ => return Vec::new(),
     };
@@ -104,9 +108,32 @@ pub(super) fn replanned(logs: &str, learns: bool) -> String {
     command(&[&["replan", logs, "--keep-plan"], careful, &["-o", "next.mcap"]].concat())
 }
 
+/// What learns the machine from a run.
+pub(super) fn fitted(log: &str) -> String {
+    command(&["fit", log, "-o", "limits.toml"])
+}
+
 /// What that does where a command was sent already.
 pub(super) const LEARNT: &str =
     "The next command is learnt from this run; put the logs of the runs before it first";
+
+fn not_corrected(why: &Uncorrectable, fits: bool) -> String {
+    match why {
+        Uncorrectable::Identifies => format!(
+            "The plan is an identification run: its strokes show what the machine cannot follow, and no command corrects that.{}",
+            if fits { " Lag, dead band and limits of the machine are learnt from it by:" } else { "" }
+        ),
+        Uncorrectable::Wraps { joint, at_s } => format!(
+            "The plan of {joint} goes from one end of its turn to the other at {at_s:.2} s: if the joint turns on and its angles \
+             wrap, say so:"
+        ),
+        Uncorrectable::Steps { joint, size, at_s } => format!(
+            "No command is made from this log: the plan of {joint} steps by {size} at {at_s:.2} s, which no joint follows. Give it \
+             ramps that it can follow.{}",
+            if fits { " How fast it goes is learnt from this log by:" } else { "" }
+        ),
+    }
+}
 
 fn half_late(delay_s: Option<f64>) -> String {
     delay_s.map_or(String::new(), |s| format!(" (half of all timed starts are more than {})", late(s)))
@@ -135,6 +162,7 @@ pub(super) fn words(step: &Advice, limit: &str, learns: bool) -> String {
             position(*kind, *error),
             position(*kind, *noise)
         ),
+        Advice::NotCorrected { why, fits } => not_corrected(why, *fits),
         Advice::NoCommand(why) => format!("No command can be made from this log: {why}."),
         Advice::FreeJoint { joint, unanswered, starts, reversals } => format!(
             "Find out why {joint} leaves {unanswered} of {} unanswered: enable signals, brakes, a dead band wider than \

@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::{
     first::{lanes, worst_start},
+    resting::unanswered,
     steps::{steps, told},
     tables::{verdicts, worst_sentence},
     together::Together,
@@ -19,12 +20,12 @@ use crate::{
                 strip::{Row, bars},
                 verdict,
             },
-            probability,
+            probability, some_of,
         },
         metric::{on_paper, position},
     },
-    replay::Verdict,
-    workflow::report::Report,
+    replay::{JointReplay, Verdict},
+    workflow::report::{Fault, Report},
 };
 
 pub(super) fn summary(report: &Report, read: &[String], plots: &mut Plots) -> Markup {
@@ -32,7 +33,11 @@ pub(super) fn summary(report: &Report, read: &[String], plots: &mut Plots) -> Ma
     let lines: Vec<String> = verdicts(report).iter().map(Sentence::to_string).collect();
     html! {
         div class="cards" {
+            @if let Some(why) = report.several_runs() {
+                (card("bad", "What was given", "Two runs?", &html! { p { (clean(why)) "." } }))
+            }
             (verdict(&kept, &lines))
+            (never(report))
             @if let Some(fault) = &report.fault {
                 @let [what, more] = told(fault);
                 (card("bad", "What happened", &what, &html! { p { (clean(&more)) } }))
@@ -42,12 +47,28 @@ pub(super) fn summary(report: &Report, read: &[String], plots: &mut Plots) -> Ma
             @for all in Together::all(&report.replay) { (place_of_error(&all)) }
             @for all in Together::all(&report.replay) { (whole_run(report, &all)) }
         }
+        (next_steps(&steps(report, read)))
         (lanes(report))
-        div class="side" {
-            @if let Some(chart) = worst_start(report) { (plots.place(chart)) }
-            div { (next_steps(&steps(report, read))) }
-        }
+        @if let Some(chart) = worst_start(report) { (plots.place(chart)) }
     }
+}
+
+/// Joints that leave starts unanswered, the worst first: those that never move are told otherwise.
+fn never(report: &Report) -> Markup {
+    let dead = match &report.fault {
+        Some(Fault::Dead { joints, .. }) => joints.as_slice(),
+        Some(Fault::Stopped { .. }) => return html! {},
+        None => &[],
+    };
+    let replay = &report.replay;
+    let mut joints: Vec<&JointReplay> =
+        replay.joints.iter().filter(|joint| !dead.contains(&joint.name)).collect();
+    joints.sort_by_key(|joint| std::cmp::Reverse(joint.unanswered_starts));
+    let Some(worst) = joints.first().filter(|joint| joint.unanswered_starts > 0) else { return html! {} };
+    let headline =
+        format!("{}: {} never answered", worst.name, some_of(worst.unanswered_starts, worst.starts, "start"));
+    let lines: Vec<String> = joints.iter().filter_map(|joint| unanswered(replay, joint)).collect();
+    card("bad", "Starts", &headline, &html! { @for line in lines { p { (clean(&line)) } } })
 }
 
 fn worst(report: &Report) -> Markup {
@@ -85,6 +106,7 @@ fn place_of_error(all: &Together) -> Markup {
         "No clear difference".to_owned()
     };
     let mostly = format!("Mostly {}", all.shift());
+    let why = all.why_undecided(c);
     let headline = match c.verdict {
         _ if all.mostly_lag().is_some() => &mostly,
         Verdict::Transitions => "In the transitions",
@@ -100,7 +122,11 @@ fn place_of_error(all: &Together) -> Markup {
                 100.0 * c.squared_error_share_inside,
                 100.0 * c.time_share_inside,
             ))
-            @if let Some(test) = c.test { " (" span class="whole" { "p = " (probability(test.p_value)) } ")" }
+            @match (why, c.test) {
+                (Some(why), _) => { "; " (why) }
+                (None, Some(test)) => { " (" span class="whole" { "p = " (probability(test.p_value)) } ")" }
+                (None, None) => {}
+            }
         }
     };
     card("", &name, headline, &body)

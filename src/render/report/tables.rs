@@ -74,7 +74,9 @@ fn in_short(report: &Report) -> Vec<Sentence> {
 
 fn findings(report: &Report) -> Vec<String> {
     let replay = &report.replay;
-    let mut lines: Vec<String> = report.fault.iter().map(|fault| told(fault).join(". ")).collect();
+    let mut lines: Vec<String> =
+        report.several_runs().map(|why| format!("Two runs? {why}.")).into_iter().collect();
+    lines.extend(report.fault.iter().map(|fault| told(fault).join(". ")));
     match report.worst() {
         Some(worst) => lines.push(format!("Worst {}: {}", worst.kind.name(), worst_sentence(worst))),
         None if replay.joints.iter().any(|joint| report.travel(joint).small) => {

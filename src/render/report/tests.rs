@@ -126,7 +126,10 @@ fn a_comparison_draws_every_joint_before_and_after() {
         ..compare::Inputs::default()
     };
     let comparison = compare::run(&inputs).unwrap();
-    let page = crate::render::compare::page(&comparison, 60);
+    let logs = ["before it.mcap", "after.mcap"].map(PathBuf::from);
+    let page = crate::render::compare::page(&comparison, 60, [&logs[..1], &logs[1..]], &[]);
+    let more = "hydrotrace compare &#39;before it.mcap&#39; after.mcap --more-before RUN_BEFORE --more-after RUN_AFTER";
+    assert!(page.contains("What to do next") && page.contains(&more.replace("&#39;", "'")), "{page}");
     for joint in &comparison.joints {
         assert!(page.contains(&format!("data-name=\"{joint}\"")), "{joint}");
     }
@@ -232,4 +235,63 @@ fn where_a_lag_explains_most_of_the_error_that_is_said_and_advised() {
     assert!(page.contains("Mostly lag") && page.contains("The error is mostly lag"));
     let lag = next(&report);
     assert!(lag.contains("feed-forward") && !lag.contains("Work on starts"), "{lag}");
+}
+
+/// The first card of a page.
+fn first_card(page: &str) -> &str {
+    page.split("<div class=\"card ").nth(1).unwrap()
+}
+
+#[test]
+fn a_start_that_is_never_answered_is_the_first_that_is_seen() {
+    let page = report_page("a", &report("task-1-run.mcap"), None, 60, &[]);
+    let card = first_card(&page);
+    assert!(card.starts_with("bad\"") && card.contains("J3: 2 of 4 starts never answered"), "{card}");
+    let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("{text} is not in the page"));
+    assert!(at("class=\"next\"") < at("table class=\"lanes\""));
+    for text in ["\"shade\":\"never\"", "rect class=\"never\"", "<td class=\"number bad\">2 never</td>"] {
+        at(text);
+    }
+    // Sorted, such a delay is longer than all.
+    at("data-sort=\"Infinity\">never</td>");
+}
+
+#[test]
+fn lanes_of_small_errors_are_drawn_small_and_of_many_joints_the_least_are_folded() {
+    let mut still = report("still-joint.mcap");
+    assert!(report_page("a", &still, None, 60, &[]).contains(">no start</td>"));
+    let fold = "7 more joints, with smaller errors";
+    assert!(!report_page("a", &still, None, 60, &[]).contains(fold));
+    let (pair, joint) = (still.pairs[0].clone(), still.replay.joints[0].clone());
+    let n = still.pairs.len();
+    for k in n..15 {
+        still.pairs.push(crate::series::Pair { name: format!("more {k}"), ..pair.clone() });
+        still.replay.joints.push(crate::replay::JointReplay { name: format!("more {k}"), ..joint.clone() });
+    }
+    let page = report_page("a", &still, None, 60, &[]);
+    assert!(page.contains(fold) && page.matches("<td class=\"lane\">").count() == 15);
+}
+
+#[test]
+fn a_p_value_is_shown_where_the_verdict_goes_by_it() {
+    let page = report_page("a", &report("gaps.mcap"), None, 60, &[]);
+    let card = page.split("No clear difference").nth(1).unwrap().split("class=\"card").next().unwrap();
+    assert!(
+        card.contains("while the plan moves the error is no smaller elsewhere") && !card.contains("p = "),
+        "{card}"
+    );
+    assert!(report_page("a", &report("task-1-run.mcap"), None, 60, &[]).contains("p = 0.163"));
+}
+
+#[test]
+fn what_was_sent_lies_below_what_was_measured() {
+    let inputs =
+        Inputs { logs: vec![sample("precompensated-run.mcap")], with_signals: true, ..Inputs::default() };
+    let page = report_page("a", &run(&inputs).unwrap(), None, 60, &[]);
+    let data = page.split("type=\"application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let charts: serde_json::Value = serde_json::from_str(data).unwrap();
+    let chart = charts.as_array().unwrap().iter().find(|chart| chart["title"] == "J1").unwrap();
+    let series = chart["panels"][0]["series"].as_array().unwrap();
+    let roles: Vec<&str> = series.iter().map(|series| series["role"].as_str().unwrap()).collect();
+    assert_eq!(roles, ["planned", "command", "measured"]);
 }

@@ -8,13 +8,13 @@ use crate::{
             counted, late,
             page::{
                 Plots, Shows,
-                chart::{Band, Chart, Panel, Role, Series, Size, at, rounded, span, times},
+                chart::{Band, Chart, Panel, Role, Series, Shade, Size, at, rounded, span, times},
                 envelope::envelope,
             },
         },
         metric::{number, on_paper, position, unit},
     },
-    replay::{Dimension, Transition},
+    replay::{Answer, Dimension, Transition},
     series::{JointKind, Pair},
     workflow::report::Report,
 };
@@ -38,7 +38,7 @@ pub(super) fn transitions(report: &Report, plots: &mut Plots) -> Markup {
             "Every planned start, from the instant of the plan, worst first. Above: planned and measured position from there, \
              upwards in the direction of motion; below: how far the joint is behind, on one scale for all"
             @if report.replay.of_kinds.len() > 1 { " of a unit" }
-            ". Shaded until the joint leaves rest. A click shows it in the whole run."
+            ". Shaded until the joint leaves rest, in red where it never does. A click shows it in the whole run."
             @if left > 0 { " " (counted(left, "smaller one")) " not drawn." }
         }
         div class="tiles" {
@@ -111,7 +111,8 @@ pub(super) fn tile(transition: &Transition, pair: &Pair, [before_s, after_s]: [f
     let behind = vec![series("behind", Role::Error, shown(&behind, 0.0, 1.0))];
     let (kind, sign) = (transition.kind.name(), number(Dimension::Sign, pair.kind, sign));
     let late = transition.onset_delay_s.map_or_else(|| transition.answer.word().to_owned(), late);
-    let waits = transition.measured_onset_s.map(|s| s - onset_s).filter(|late_s| *late_s > 0.0);
+    let waits =
+        waits(transition, onset_s).map(|waits| Band { from: 0.0, to: rounded(waits.to - onset_s), ..waits });
     Chart {
         title: format!("{} {kind} {sign} at {onset_s:.2} s", transition.joint),
         note: format!("peak {}, {late}", position(pair.kind, transition.peak_error)),
@@ -122,9 +123,18 @@ pub(super) fn tile(transition: &Transition, pair: &Pair, [before_s, after_s]: [f
             Panel::of(format!("Position ({unit})"), 0.5, both),
             Panel::of(format!("Behind ({unit})"), 0.5, behind),
         ],
-        bands: waits.map(|late_s| Band { from: 0.0, to: rounded(late_s), late: true }).into_iter().collect(),
+        bands: waits.into_iter().collect(),
         group: None,
         height: 150,
         size: Size::Tile,
     }
+}
+
+/// From an instant of a start until the joint answers, or to the end of its window.
+pub(super) fn waits(start: &Transition, from: f64) -> Option<Band> {
+    let (to_s, shade) = match (start.answer, start.measured_onset_s) {
+        (Answer::Never, _) => (start.window_s[1], Shade::Never),
+        (_, onset_s) => (onset_s?, Shade::Late),
+    };
+    (to_s > from).then(|| Band { from, to: rounded(to_s), shade })
 }

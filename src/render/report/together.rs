@@ -6,7 +6,7 @@ use crate::{
         kit::{capital, counted, ms, probability, share as percents},
         metric::position,
     },
-    replay::{JointReplay, Replay, Verdict, WholeRun},
+    replay::{Concentration, JointReplay, Replay, Verdict, WholeRun},
     series::JointKind,
 };
 
@@ -79,6 +79,18 @@ impl<'a> Together<'a> {
         ))
     }
 
+    /// Why nothing is told although the test shows a difference: its p is then no answer.
+    pub(super) fn why_undecided(&self, found: &Concentration) -> Option<&'static str> {
+        let test = found.test.filter(|test| test.p_value < self.replay.rules.significance)?;
+        let inside = test.effect > 0.5 && found.rms_inside > found.rms_outside;
+        (found.verdict == Verdict::Undecided).then_some(if inside {
+            "while the plan moves the error is no smaller elsewhere: of a motion whose start lies in a gap, or within another start's window, the rest \
+             counts there"
+        } else {
+            "a few large errors and most of the events say the opposite of each other"
+        })
+    }
+
     /// Where the error arises, what a lag explains of it, and how far from the planned path they are.
     pub(super) fn findings(&self) -> Vec<String> {
         let (kind, mostly) = (self.kind, self.mostly_lag());
@@ -93,14 +105,16 @@ impl<'a> Together<'a> {
                     "Whether most of the error arises in the transitions cannot be told"
                 }
             };
-            let test = c.test.map_or("too few stretches to test".to_owned(), |t| {
-                format!(
+            let test = match (self.why_undecided(c), c.test) {
+                (_, None) => "too few stretches to test".to_owned(),
+                (Some(why), _) => why.to_owned(),
+                (None, Some(t)) => format!(
                     "p = {}, {} transition events against {} other stretches",
                     probability(t.p_value),
                     t.inside_count,
                     t.outside_count
-                )
-            });
+                ),
+            };
             let moving = c
                 .rms_outside_moving
                 .map_or("at rest".to_owned(), |rms| format!("{} while the plan moves", position(kind, rms)));

@@ -77,9 +77,10 @@ fn causes(tool: &ToolReplay) -> Table {
         );
         columns.push(
             Column::numbers("makes mm")
-                .meaning("What that makes of the tool's distance; negative if it lessens it."),
+                .meaning("What that makes of the tool's distance; negative if it lessens it.")
+                .going_on(),
         );
-        columns.push(Column::numbers("share").meaning("The same as a share of the distance."));
+        columns.push(Column::numbers("share").meaning("The same as a share of the distance.").going_on());
     }
     let cells = |cause: Option<&ToolCause>| match cause {
         Some(cause) => [position(cause.kind, cause.joint_error), mm(cause.error_m), share(cause.share)],

@@ -99,6 +99,13 @@ pub(super) fn of<'a>(report: &'a Report, id: &str) -> Option<&'a LateStart> {
     report.why.as_ref()?.as_ref().ok()?.starts.iter().find(|start| start.id == id)
 }
 
+/// Whether dead band and lag are told apart: one of them may be none, or is negative.
+fn tells_apart(start: &LateStart) -> bool {
+    let (dead_band, lag) = (&start.dead_band, &start.lag);
+    let negative = dead_band.delay_s.min(lag.delay_s) < 0.0;
+    !negative && !(is_unsure(dead_band) && is_unsure(lag))
+}
+
 /// Starts in the order of their rows.
 pub(super) fn latest_first(why: &Why) -> Vec<&LateStart> {
     let mut starts: Vec<&LateStart> = why.starts.iter().collect();
@@ -124,7 +131,8 @@ fn explained(why: &Why, most: usize) -> Vec<Block> {
         Column::words("joint"),
         Column::numbers("at s").meaning("When the plan starts."),
         Column::numbers("delay ms").meaning("Time between plan and joint passing the same speed."),
-        Column::words("of it").meaning("The parts that make a start late, on one scale."),
+        Column::words("of it")
+            .meaning("The parts that make a start late, on one scale: a bar is as long as the delay."),
     ];
     for (_, heading, meaning, _) in PARTS {
         columns.push(Column::numbers(heading).meaning(meaning));
@@ -162,7 +170,7 @@ fn explained(why: &Why, most: usize) -> Vec<Block> {
             .map(|joint| Sentence::note(format!("{joint}; its delays are not explained.")).into()),
     );
     blocks.push(Sentence::note(
-        "█ dead band, ▒ lag, ░ limits, ? unexplained. Lag is the delay of the fitted model without limits and dead band, timed with the noise of the run; limit is what the \
+        "█ dead band, ▒ lag, ▓ both where they are not told apart, ░ limits, ? unexplained. Lag is the delay of the fitted model without limits and dead band, timed with the noise of the run; limit is what the \
          model loses without its limits; the rest is the dead band's, and what is later than any likely one explains is unexplained. In brackets 95 % intervals, from those of the fit.",
     ).into());
     blocks
@@ -174,13 +182,19 @@ fn with_interval(part: &Part) -> String {
     ms(part.delay_s) + &interval
 }
 
-/// The parts that make it late, side by side.
+/// The parts that make it late, side by side, in all as long as the delay.
 fn bar(start: &LateStart, longest_s: f64) -> String {
-    let mut sum_s = 0.0;
-    let mut bar = String::new();
-    for (fill, .., part) in PARTS {
-        sum_s += part(start).delay_s.max(0.0);
-        let end = whole((WIDE * (sum_s / longest_s).min(1.5)).round());
+    let parts: Vec<(char, f64)> = PARTS.iter().map(|(fill, .., part)| (*fill, part(start).delay_s)).collect();
+    let parts = match parts.as_slice() {
+        [dead_band, lag, rest @ ..] if !tells_apart(start) => {
+            std::iter::once(('▓', dead_band.1 + lag.1)).chain(rest.iter().copied()).collect()
+        }
+        _ => parts,
+    };
+    let (mut sum_s, mut bar) = (0.0, String::new());
+    for (fill, part_s) in parts {
+        sum_s += part_s.max(0.0);
+        let end = whole((WIDE * (sum_s.min(start.onset_delay_s) / longest_s).clamp(0.0, 1.0)).round());
         let more = end.saturating_sub(bar.chars().count());
         bar.extend(std::iter::repeat_n(fill, more));
     }
@@ -190,6 +204,33 @@ fn bar(start: &LateStart, longest_s: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_bar_is_as_long_as_the_delay_and_parts_that_are_not_told_apart_are_one() {
+        let part = |delay_s: f64, half_s: f64| Part {
+            delay_s,
+            interval_s: Some([delay_s - half_s, delay_s + half_s]),
+        };
+        let drawn = |dead_band: Part, lag: Part, limit_s: f64| {
+            let limit = Part { delay_s: limit_s, interval_s: None };
+            let start = LateStart {
+                id: "1".to_owned(),
+                joint: "J5".to_owned(),
+                planned_onset_s: 2.0,
+                onset_delay_s: dead_band.delay_s + lag.delay_s + limit_s,
+                dead_band,
+                lag,
+                limit,
+                unexplained: Part { delay_s: 0.0, interval_s: None },
+            };
+            bar(&start, 2.4)
+        };
+        assert_eq!(drawn(part(0.2, 0.1), part(0.3, 0.1), 0.1), "██▒▒▒░");
+        assert_eq!(drawn(part(0.2, 0.5), part(0.3, 0.5), 0.1), "▓▓▓▓▓░");
+        assert_eq!(drawn(part(-0.5, 0.1), part(0.8, 0.1), 0.0), "▓▓▓");
+        assert_eq!(drawn(part(0.5, 0.1), part(0.8, 0.1), -0.3), "█████▒▒▒▒▒");
+        assert_eq!(drawn(part(-0.5, 0.1), part(0.4, 0.1), 0.0), "");
+    }
 
     #[test]
     fn no_part_of_a_delay_is_said_to_be_negative() {

@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use super::{began, delay, peak, verdict};
 use crate::{
     render::{
-        fleet::{days, said},
+        fleet::{chart as level, days, said},
         kit::{
             self, Document, NONE, Section, clean, counted, fact,
             page::{
@@ -15,17 +15,20 @@ use crate::{
                 chart::{Chart, Panel, Role, Series, Size, rounded},
             },
         },
-        metric::{on_paper, unit},
+        metric::{on_paper, unit, with_unit},
     },
     replay::Dimension,
     series::JointKind,
     workflow::{
-        fleet::Drift,
+        fleet::{Drift, JointTrend},
+        report::GateResult,
         watch::{Index, Run, RunJoint, Verdict},
     },
 };
 
 const MOST_DRAWN: usize = 120;
+/// Changes of a machine whose levels are drawn.
+const MOST_FOUND: usize = 6;
 /// Runs of a trend that are drawn, the newest.
 const MOST_RUNS: usize = 400;
 
@@ -68,6 +71,7 @@ fn summary(index: &Index<'_>, done: &[&Run], failed: &[&Run]) -> Markup {
     html! {
         div class="cards" {
             (card(class, "Verdict", &headline, &html! {
+                @for limit in limits(done) { p { (limit) } }
                 @if kept + broken == 0 {
                     p { "Limits such as " code { "--max-transition-peak-deg 0.5" } " make verdicts." }
                 }
@@ -82,6 +86,23 @@ fn summary(index: &Index<'_>, done: &[&Run], failed: &[&Run]) -> Markup {
             }
         }
     }
+}
+
+/// The limits of the newest run that has some.
+fn limits(done: &[&Run]) -> Vec<String> {
+    let gates = done.iter().map(|run| &run.gates).find(|gates| !gates.is_empty());
+    let said = |gate: &GateResult| {
+        format!("Limit on {}: {}", gate.gate.name, with_unit(gate.gate.dimension, gate.kind(), gate.limit))
+    };
+    gates.into_iter().flatten().map(said).collect()
+}
+
+/// What was found against a limit that is not kept.
+fn over(gate: &GateResult) -> String {
+    let shown = |value: f64| with_unit(gate.gate.dimension, gate.kind(), value);
+    let Some(joint) = &gate.joint else { return "nothing to judge".to_owned() };
+    let worst = gate.worst.map_or(gate.gate.missing.to_owned(), shown);
+    format!("{joint}: {worst}, {} allowed", shown(gate.limit))
 }
 
 fn drift_card(drift: &Drift) -> Markup {
@@ -128,6 +149,7 @@ fn table(runs: &[&Run]) -> Markup {
                             td class=(class(run)) {
                                 @if run.verdict == Verdict::NoLimits { (verdict(run.verdict)) }
                                 @else { span class="mark" { (verdict(run.verdict)) } }
+                                @for gate in run.gates.iter().filter(|gate| !gate.kept) { p { (clean(&over(gate))) } }
                             }
                             td { (clean(run.worst().map_or(NONE, |worst| &worst.joint))) }
                             td class="number" { (run.worst().map_or(NONE.to_owned(), peak)) }
@@ -135,7 +157,7 @@ fn table(runs: &[&Run]) -> Markup {
                                 (delay(run.largest_delay_s))
                                 @if let Some(joint) = run.latest() { " (" (clean(&joint.joint)) ")" }
                             }
-                            td class="number" { (number(run.unanswered_starts)) }
+                            td class={ "number" @if run.unanswered_starts > 0 { " bad" } } { (number(run.unanswered_starts)) }
                             td class="number" { (number(run.remarks)) }
                         }
                     }
@@ -180,7 +202,7 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
         p class="hint" {
             "Each run of each joint: above its peak error, below its longest dead time in ms, over " (time_unit) " since "
             (dated.last().map_or(NONE.to_owned(), |(run, _)| began(run))) ". A line joins the runs of one plan; those of another differ \
-             without any change of the machine. A drift is told by the same starts of the same plan, from five runs of a machine on."
+             without any change of the machine. A drift is told by the same starts of the same plan, from five runs of a machine on, and drawn above as what these did."
             @if dated.len() < done.len() {
                 " " (counted(done.len() - dated.len(), "run")) " without a date, in stamps or name, not drawn."
             }
@@ -189,7 +211,9 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
         @for (machine, joints) in &machines {
             @if left > 0 {
                 h3 { @if *machine == NONE { "No machine named" } @else { (clean(machine)) } }
-                @for line in drifts(drift, machine) { p { (clean(&line)) } }
+                @let found = drifts(drift, machine);
+                @for trend in &found { p { (clean(&said(trend))) } }
+                div class="side" { @for trend in found.iter().take(MOST_FOUND) { (plots.place(level(trend))) } }
                 div class="tiles" {
                     @for (name, points) in joints.iter().take(left) { (plots.place(chart(*name, points, range))) }
                 }
@@ -199,9 +223,9 @@ fn trends(done: &[&Run], drift: Option<&Drift>, plots: &mut Plots) -> Markup {
     }
 }
 
-fn drifts(drift: Option<&Drift>, machine: &str) -> Vec<String> {
-    let trends = drift.iter().flat_map(|drift| &drift.trends);
-    trends.filter(|trend| trend.found && trend.machine == machine).map(said).collect()
+fn drifts<'a>(drift: Option<&'a Drift>, machine: &str) -> Vec<&'a JointTrend> {
+    let trends = drift.into_iter().flat_map(|drift| &drift.trends);
+    trends.filter(|trend| trend.found && trend.machine == machine).collect()
 }
 
 struct Point<'a> {

@@ -16,10 +16,11 @@ use crate::{
     log::{ReadOptions, Recording, SignalRole, SourceInfo},
     math::range,
     remark::{Code, Remarks},
-    replay::{Rules, planned_step},
+    replay::Rules,
     series::{Series, Track},
     workflow::{
         carried::Carried,
+        correctable::uncorrectable,
         leads::doubt_leads,
         names::told_apart,
         same_plan::{SAME_RAD, is_again},
@@ -156,8 +157,6 @@ pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted
     let sound = |one: &Recording| !one.remarks.as_slice().iter().any(|remark| remark.code.spoils_runs());
     let carried: Vec<Carried> = observed.iter().map(|run| Carried::of(run)).collect();
     let rules = Rules::default();
-    let steps =
-        |one: &Recording| one.planned.tracks.iter().any(|track| planned_step(track, &rules).is_some());
     let astray = |one: &Recording| {
         let run = observation(one);
         half_astray(&fit, &one.planned, Trial { sent: run.sent, measured: run.measured })
@@ -166,7 +165,7 @@ pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted
         match observed[k] {
         _ if runs[k].identifies => Some("it is an identification run".to_owned()),
         one if !sound(one) => Some("it does not belong to its plan, as the remarks say".to_owned()),
-        one if steps(one) => Some("its plan steps".to_owned()),
+        one if uncorrectable(one, &rules).is_some() => Some("its plan steps".to_owned()),
         one if astray(one) => Some(
             "half of its joints or more do not follow their plan: the error of each is more than half of its motion".to_owned(),
         ),

@@ -1,6 +1,6 @@
 //! Why there is no plan for the next run.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -9,7 +9,7 @@ use crate::{
     fit::FitError,
     plan::PlanError,
     series::{Broken, JointKind, SignalError},
-    workflow::{fit::FitFailure, idle_bound::IdleBound, plan::PlanFailure},
+    workflow::{correctable::Uncorrectable, fit::FitFailure, idle_bound::IdleBound, plan::PlanFailure},
 };
 
 /// Why there is no plan for the next run.
@@ -109,6 +109,18 @@ pub enum ReplanFailure {
         path.display()
     )]
     Astray { path: PathBuf },
+}
+
+impl ReplanFailure {
+    /// Of a plan that no command is corrected for.
+    pub(super) fn of(path: &Path, why: Uncorrectable) -> Self {
+        let path = path.to_owned();
+        match why {
+            Uncorrectable::Identifies => Self::Identifies { path },
+            Uncorrectable::Wraps { joint, at_s } => Self::Wraps { path, joint, at_s },
+            Uncorrectable::Steps { joint, size, at_s } => Self::Steps { path, joint, size, at_s },
+        }
+    }
 }
 
 /// Where a plan or command is broken, what that means, and what to give.

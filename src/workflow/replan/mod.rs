@@ -6,7 +6,6 @@ mod checks;
 mod command;
 #[cfg(test)]
 mod command_laws;
-mod correctable;
 mod course;
 mod decision;
 mod document;
@@ -57,10 +56,9 @@ use crate::{
     plan::{PlanEvaluation, Setup, Timing},
     remark::Code,
     task::{Ceilings, Objective, Objectives},
-    workflow::{names::told_apart, plan::Shaping},
+    workflow::{correctable::uncorrectable, names::told_apart, plan::Shaping},
 };
 use candidate::{Candidate, Maker, Sampled, asks_too_much, decided};
-use correctable::correctable;
 use history::History;
 use last::Last;
 use left_out::without_useless;
@@ -90,7 +88,9 @@ pub fn run(
     let path = inputs.logs.last().ok_or(ReplanFailure::NoLog)?;
     unspoilt(inputs, observed)?;
     let newest = observed.last().ok_or(ReplanFailure::NoLog)?;
-    correctable(path, newest, &inputs.rules)?;
+    if let Some(why) = uncorrectable(newest, &inputs.rules) {
+        return Err(ReplanFailure::of(path, why));
+    }
     let last = Last::of(path, newest, inputs)?;
     inputs.check_bounds(&last.plan)?;
     let names = told_apart(&inputs.logs);

@@ -182,13 +182,6 @@ pub struct Past {
 /// Share of a correction that is careful.
 pub(super) const CAREFUL: f64 = 0.5;
 
-impl Past {
-    /// Whether no more of a correction was asked for than of a first one is wise.
-    pub fn careful(&self) -> bool {
-        self.gain <= CAREFUL
-    }
-}
-
 /// What of a correction limits leave out.
 fn limited(command: &Commanded, remarks: &mut Remarks) {
     if let Some((share, limit)) = command.smaller {

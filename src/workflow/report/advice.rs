@@ -1,6 +1,6 @@
 //! What to do about what a report found.
 
-use super::{Fault, outcome::Report};
+use super::{Fault, Uncorrectable, outcome::Report};
 use crate::{
     fit::SPARSEST_S,
     replay::{JointReplay, Transition, Verdict},
@@ -70,6 +70,13 @@ pub enum Advice {
     },
     /// A fit says why no command can be made from the log.
     NoCommand(String),
+    /// No command is corrected for the plan of the log.
+    NotCorrected {
+        /// Why.
+        why: Uncorrectable,
+        /// Whether a machine can be fitted to it.
+        fits: bool,
+    },
     /// No joint is asked to leave rest.
     RecordStarts,
     /// No command can be made from the log, because its plan is broken.
@@ -121,9 +128,12 @@ pub fn advice(report: &Report) -> Vec<Advice> {
         |joint: &JointReplay| joint.kind == JointKind::Slides && OF_TOOL.contains(&joint.name.as_str());
     let tells = |joint: &JointReplay| !of_tool(joint) && joint.sample_interval_s <= SPARSEST_S;
     let could = sound && replay.joints.iter().any(tells);
-    let fits = could && report.broken.is_none() && report.unfit.is_none();
+    let whole = could && report.broken.is_none() && report.unfit.is_none();
+    let fits = whole && report.uncorrectable.is_none();
     let noise = report.only_noise();
-    if let Some(joint) = noise {
+    if report.uncorrectable == Some(Uncorrectable::Identifies) {
+        // Its strokes are beyond the machine: no work on starts helps.
+    } else if let Some(joint) = noise {
         let (noise, error) = (joint.noise.sigma, joint.tracking_error.rms);
         advice.push(Advice::LeaveIt { noise, error, kind: joint.kind });
     } else if let Some((joint, lag_s)) = mostly_lag(report, worst.joint_kind) {
@@ -138,6 +148,8 @@ pub fn advice(report: &Report) -> Vec<Advice> {
             gentler: report.holds_task,
         });
     }
+    let why = report.uncorrectable.clone().filter(|_| could && noise.is_none());
+    advice.extend(why.map(|why| Advice::NotCorrected { why, fits: whole }));
     advice.extend(report.broken.clone().filter(|_| could).map(Advice::RecordWhole));
     let unfit = report.unfit.clone().filter(|_| could && report.broken.is_none() && noise.is_none());
     advice.extend(unfit.map(Advice::NoCommand));

@@ -17,6 +17,7 @@ mod why;
 
 use std::{collections::BTreeMap, path::PathBuf};
 
+pub use super::correctable::Uncorrectable;
 pub use analysis::{Analysis, analyse};
 use analysis::{aligned, taken};
 pub use backward::Backward;
@@ -38,6 +39,7 @@ use why::{Ready, Unready};
 
 use super::{
     carried::{Carried, PLAN, Schedule},
+    correctable::uncorrectable,
     leads::remark_leads,
     plan::PlanDocument,
 };
@@ -115,6 +117,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     let mut remarks = recording.remarks.clone();
     carried.remark_altered(&mut remarks);
     let broken = carried.broken(&recording);
+    let uncorrectable = uncorrectable(&recording, &inputs.rules);
     let model = inputs.delay_model.ready(&recording);
     let sides = [&recording.planned, &recording.measured];
     // The rows of a table have one time.
@@ -168,6 +171,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     let report = Report {
         fault: None,
         unfit,
+        uncorrectable,
         logs: inputs.logs.iter().filter_map(name).collect(),
         paths: inputs.logs.clone(),
         machine: named("machine"),

@@ -8,11 +8,12 @@ use super::{gates::GateResult, tool::Tool, why::Why};
 use crate::{
     log::{Command, SignalRole, SourceInfo},
     math::range,
-    remark::Remarks,
+    remark::{Code, Remark, Remarks},
     replay::{JointReplay, Profiles, Replay, Swing, swings},
     series::{Broken, Pair, Signal},
     workflow::{
         carried::{Held, Schedule},
+        correctable::Uncorrectable,
         plan::PlanDocument,
     },
 };
@@ -83,6 +84,8 @@ pub struct Report {
     pub fault: Option<Fault>,
     /// Why no command can be made from it, as far as a fit was asked for and says so.
     pub unfit: Option<String>,
+    /// Why no command is corrected for its plan.
+    pub uncorrectable: Option<Uncorrectable>,
     /// What was doubtful.
     pub remarks: Remarks,
     /// Each joint's error over the run, in the order of its joints.
@@ -137,6 +140,12 @@ impl Report {
         let rests = measured <= least.max(NOISE_SIGMAS * joint.noise.sigma);
         let small = !joint.plan_moves && is_clear([planned, measured], joint.noise.sigma);
         Travel { planned, measured, rests, small }
+    }
+
+    /// What was said of files that look like a run each.
+    pub fn several_runs(&self) -> Option<&str> {
+        let of = |remark: &&Remark| remark.code == Code::SeveralRuns;
+        self.remarks.as_slice().iter().find(of).map(|remark| remark.message.as_str())
     }
 
     /// Whether every limit is kept.

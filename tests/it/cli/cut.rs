@@ -203,8 +203,27 @@ fn files_of_one_folder_that_are_hours_apart_are_no_one_run() {
     fs::create_dir(folder.join("runs")).unwrap();
     table("one", "2026-05-04 10:00");
     table("two", "2026-05-04 10:01");
-    let (code, out, error) = said(&run_line(folder, "report runs"));
-    assert!(code == 0 || code == 3, "{out}{error}");
+    let (code, out, _) = said(&run_line(folder, "report runs"));
+    assert!(
+        code == 3 && out.contains("Two runs? one.mcap (10.0 s) and two.mcap (10.0 s) are 50.0 s apart"),
+        "{out}"
+    );
+    let (_, page, _) = said(&run_line(folder, "report runs --html"));
+    let first = page.split("<div class=\"card ").nth(1).unwrap();
+    assert!(
+        first.starts_with("bad\"") && first.contains("Two runs?") && first.contains("hydrotrace compare"),
+        "{first}"
+    );
+    // Joints of other names make no other case.
+    let other =
+        fs::read_to_string(folder.join("a.csv")).unwrap().replace("boom", "stick").replace("10:01", "19:01");
+    fs::write(folder.join("b.csv"), other).unwrap();
+    said(&run_line(folder, "import b.csv -o other.mcap"));
+    let (code, _, error) = said(&run_line(folder, "report runs/one.mcap other.mcap"));
+    assert!(
+        code == 1 && error.contains("9.0 hours apart") && error.contains("hydrotrace fleet"),
+        "{code}: {error}"
+    );
     table("three", "2026-05-05 10:01");
     for line in ["report runs", "fit runs", "replan runs --keep-plan -o next.mcap"] {
         let (code, _, error) = said(&run_line(folder, line));

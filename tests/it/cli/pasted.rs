@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::support::{fleet::small_fleet, pasted, run_line, said, sample, scratch};
+use crate::support::{fleet::small_fleet, pasted, run_line, said, sample, scratch, timed};
 
 const URDF: &str = r#"<robot name="r"><link name="base"/><link name="l1"/>
 <joint name="turn" type="continuous"><parent link="base"/><child link="l1"/><axis xyz="0 0 1"/></joint></robot>"#;
@@ -69,4 +69,39 @@ fn what_is_not_written_and_a_joint_that_is_named_twice_are_refused() {
     assert_eq!(of("export ./-run.mcap --parquet").0, 2);
     let (code, out, error) = of("-- -run.mcap");
     assert!(code == 0 && out.starts_with("-run.mcap"), "{error}");
+}
+
+/// Lines of the page of a report, as they are shown.
+fn lines_of_page(folder: &std::path::Path, log: &str) -> Vec<String> {
+    let (code, page, error) = said(&run_line(folder, &format!("report {log} --html")));
+    assert!(code == 0 || code == 3, "{error}");
+    let next = page.split("class=\"next\">").nth(1).unwrap().split("</ol>").next().unwrap();
+    let line = |rest: &str| rest.split("</code>").next().unwrap_or_default().to_owned();
+    next.split("<code>").skip(1).map(line).collect()
+}
+
+#[test]
+fn of_a_plan_that_no_command_corrects_the_machine_is_learnt() {
+    let folder = scratch();
+    let folder = folder.path();
+    fs::copy(sample("identification-run.mcap"), folder.join("strokes.mcap")).unwrap();
+    // Each step is answered by a ramp.
+    let set = |t_s: f64| if (t_s / 4.0).floor() % 2.0 == 0.0 { 0.0 } else { 20.0 };
+    let steps = timed("t_s,boom_set_deg,boom_act_deg", (2400, 0.01), |t_s| {
+        let since_s = t_s % 4.0;
+        let from = if t_s < 4.0 { 0.0 } else { 20.0 - set(t_s) };
+        let came = from + (set(t_s) - from) * ((since_s - 0.2) / 1.0).clamp(0.0, 1.0);
+        format!("{t_s:.2},{:.1},{came:.3}", set(t_s))
+    });
+    fs::write(folder.join("steps.csv"), steps).unwrap();
+    for log in ["strokes.mcap", "steps.csv"] {
+        let lines = lines_of_page(folder, log);
+        assert!(!lines.iter().any(|line| line.contains("replan")), "{lines:?}");
+        let fit = lines.iter().find(|line| line.starts_with("hydrotrace fit "));
+        let Some(fit) = fit else { panic!("{log}: {lines:?}") };
+        let (code, _, error) = pasted(folder, &format!("{fit} --force"));
+        assert!(code == 0 || code == 3, "{fit}: {error}");
+    }
+    let (_, text, _) = said(&run_line(folder, "strokes.mcap"));
+    assert!(text.contains("hydrotrace fit strokes.mcap -o limits.toml"), "{text}");
 }

@@ -113,7 +113,7 @@ fn the_page_answers_with_verdict_checks_commands_and_every_joint_and_fetches_not
     assert!(whole.contains("Send half of the correction first: no correction of this plan was sent before."));
     for words in [
         "<code>hydrotrace replan run.mcap --keep-plan --gain 0.5 -o careful.mcap</code>",
-        "<code>hydrotrace join RUN.mcap --plan next.mcap -o after.mcap</code>",
+        "<code>hydrotrace join RUN.mcap --plan careful.mcap -o after.mcap</code>",
         "<code>hydrotrace compare run.mcap after.mcap</code>",
         "default-src 'none'; script-src 'sha256-",
         "<li class=\"care\"><span class=\"mark\">CARE</span><b>Size of step</b>",

@@ -236,6 +236,9 @@ fn a_restart_reports_nothing_twice_and_another_request_all_again() {
     assert!(code == 4 && out.contains("5 of them over a limit"), "{code} {out}");
     let index = fs::read_to_string(folder.path().join("out/index.html")).unwrap();
     assert!(index.contains("5 of 5 runs NOT within limits"), "{index}");
+    // Which limit, and for each run what was found against it.
+    let limit = "<p>Limit on transition peak: 0.001 deg</p>";
+    assert!(index.contains(limit) && index.matches(" deg, 0.001 deg allowed</p>").count() == 5, "{index}");
     // Nothing is reported in this session: no limit is broken by it.
     assert_eq!(said(&run_line(folder.path(), &format!("{ONCE} --max-transition-peak-deg 0.001"))).0, 0);
 }

@@ -75,6 +75,11 @@ pub(in crate::render) fn table(table: &Table) -> Markup {
     table_of(table, &[])
 }
 
+/// What a cell is sorted by that is no number and yet more than each.
+fn later_than_any(cell: &str) -> Option<&'static str> {
+    (cell == "never").then_some("Infinity")
+}
+
 fn table_of(table: &Table, shows: &[Shows]) -> Markup {
     let class = |k: usize| match table.columns.get(k).map(|column| column.align) {
         Some(Align::Left) => "word",
@@ -97,7 +102,9 @@ fn table_of(table: &Table, shows: &[Shows]) -> Markup {
                         @let of = shows.get(n);
                         tr tabindex=[of.map(|_| 0)] data-from=[of.map(|of| &of.from)] data-to=[of.map(|of| &of.to)]
                             data-joint=[of.map(|of| &of.joint)] {
-                            @for (k, cell) in row.iter().enumerate() { td class=(class(k)) { (clean(cell)) } }
+                            @for (k, cell) in row.iter().enumerate() {
+                                td class=(class(k)) data-sort=[later_than_any(cell)] { (clean(cell)) }
+                            }
                         }
                     }
                 }

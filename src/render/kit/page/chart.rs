@@ -105,8 +105,41 @@ impl Series {
 pub(in crate::render) struct Band {
     pub(in crate::render) from: f64,
     pub(in crate::render) to: f64,
+    pub(in crate::render) shade: Shade,
+}
+
+/// What a stretch is shaded for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(in crate::render) enum Shade {
     /// The joint has not answered yet.
-    pub(in crate::render) late: bool,
+    Late,
+    /// It never does.
+    Never,
+    /// A transition.
+    Window,
+}
+
+impl Shade {
+    pub(in crate::render) const ALL: [Self; 3] = [Self::Late, Self::Never, Self::Window];
+
+    /// In a legend, and in the sheet of styles.
+    pub(in crate::render) fn names(self) -> [&'static str; 2] {
+        match self {
+            Self::Late => ["not yet answered", "late"],
+            Self::Never => ["never answered", "never"],
+            Self::Window => ["transition", "window"],
+        }
+    }
+
+    /// On paper, and how much of it.
+    pub(in crate::render) fn colour(self) -> (RGBColor, f64) {
+        match self {
+            Self::Late => (RGBColor(232, 160, 32), 0.45),
+            Self::Never => (RGBColor(178, 58, 0), 0.3),
+            Self::Window => (RGBColor(232, 160, 32), 0.13),
+        }
+    }
 }
 
 /// What a series is, and so how it looks.
@@ -119,6 +152,8 @@ pub(in crate::render) enum Role {
     Error,
     /// Before a change; after it, errors look as measured.
     Before,
+    /// What was sent to the machine: dashed.
+    Command,
     /// Many points.
     Point,
     /// Few points that are named beside them.
@@ -143,6 +178,7 @@ impl Role {
             Self::Measured | Self::Point => RGBColor(0, 98, 166),
             Self::Error | Self::Named => RGBColor(196, 78, 0),
             Self::Before => RGBColor(140, 146, 154),
+            Self::Command => RGBColor(138, 79, 176),
             Self::Guide => RGBColor(160, 165, 171),
             Self::Band => RGBColor(197, 219, 236),
         }
@@ -153,7 +189,7 @@ impl Role {
         match self {
             Self::Planned => 0.8,
             Self::Named => 0.9,
-            Self::Before => 0.4,
+            Self::Before | Self::Command => 0.4,
             Self::Point => 0.45,
             Self::Guide => 0.2,
             Self::Band => 2.0,

@@ -5,15 +5,15 @@ use std::ops::Range;
 /// Places to draw, in order; `None` lifts the pen between segments.
 ///
 /// Of series that share their instants, cut into continuous segments of `0..n`, about `most` places remain: all,
-/// if there are no more, else those where a series is least or most within its bucket of equal length. A spike of
-/// one sample stays.
+/// if there are no more, else those where a series is least or most within its bucket of equal length, and the ends of
+/// the bucket: what happens in one makes no slope in the next. A spike of one sample stays.
 pub(in crate::render) fn envelope(
     segments: &[Range<usize>],
     series: &[&[f64]],
     most: usize,
 ) -> Vec<Option<usize>> {
     let n: usize = segments.iter().map(ExactSizeIterator::len).sum();
-    let buckets = (most / (2 * series.len()).max(1)).max(1);
+    let buckets = (most / (2 * series.len() + 2)).max(1);
     let size = if n <= most { 1 } else { n.div_ceil(buckets) };
     let mut places = Vec::new();
     for segment in segments {
@@ -24,12 +24,7 @@ pub(in crate::render) fn envelope(
         while start < segment.end {
             let end = (start + size).min(segment.end);
             let mut kept = extremes(start..end, series);
-            if start == segment.start {
-                kept.push(start);
-            }
-            if end == segment.end {
-                kept.push(end - 1);
-            }
+            kept.extend([start, end - 1]);
             kept.sort_unstable();
             kept.dedup();
             places.extend(kept.into_iter().map(Some));
@@ -59,28 +54,6 @@ pub(in crate::render) fn with_parts(
         }
         let [from, to] = [segment.start, segment.end].map(|end| kept.partition_point(|place| *place < end));
         places.extend(kept[from..to].iter().copied().map(Some));
-    }
-    places
-}
-
-/// The largest value of each bucket of equal length, about `most` of them.
-pub(in crate::render) fn crests(
-    segments: &[Range<usize>],
-    values: &[f64],
-    most: usize,
-) -> Vec<Option<usize>> {
-    let n: usize = segments.iter().map(ExactSizeIterator::len).sum();
-    let size = n.div_ceil(most.max(1)).max(1);
-    let mut places = Vec::new();
-    for segment in segments {
-        if !places.is_empty() {
-            places.push(None);
-        }
-        let starts = segment.clone().step_by(size);
-        let largest = |start: usize| {
-            (start..(start + size).min(segment.end)).max_by(|a, b| values[*a].total_cmp(&values[*b]))
-        };
-        places.extend(starts.map(largest));
     }
     places
 }
@@ -120,15 +93,26 @@ mod tests {
     }
 
     #[test]
-    fn parts_keep_their_course_and_crests_only_what_is_largest() {
+    fn parts_keep_their_course() {
         let wave: Vec<f64> = (0..9000_i32).map(|k| f64::from(k % 10)).collect();
         let segments = [0..5000, 5000..9000];
         let places = with_parts(&segments, &[&wave], 200, (&[4000..4100, 4990..5010], 100));
         assert!((4000..4100).chain(4990..5010).all(|k| places.contains(&Some(k))), "{places:?}");
         assert_eq!(places.iter().filter(|place| place.is_none()).count(), 1);
         assert!(places.len() < 400, "{}", places.len());
-        let crests = crests(&segments, &wave, 100);
-        assert!(crests.iter().flatten().all(|k| wave[*k] > 8.5), "{crests:?}");
+    }
+
+    #[test]
+    fn a_motion_makes_no_slope_where_nothing_moves() {
+        let values: Vec<f64> =
+            (0..100_000).map(|k| if (50_500..50_600).contains(&k) { 1.0 } else { 0.0 }).collect();
+        let places: Vec<usize> =
+            envelope(&one(values.len()), &[&values], 400).into_iter().flatten().collect();
+        let slopes = places.windows(2).filter(|two| (values[two[0]] - values[two[1]]).abs() > 0.5);
+        assert!(
+            slopes.clone().count() == 2 && slopes.flatten().all(|k| (50_000..51_100).contains(k)),
+            "{places:?}"
+        );
     }
 
     #[test]

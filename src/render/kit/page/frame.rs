@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 
 use super::{
     blocks,
-    chart::{Chart, Role, embedded},
+    chart::{Chart, Role, Shade, embedded},
     paper::{self, Paper},
 };
 use crate::{
@@ -66,7 +66,7 @@ impl Plots {
                     span class="title" { (clean(&chart.title)) }
                     @if !chart.note.is_empty() { span class="note" { (clean(&chart.note)) } }
                     @if !chart.is_tile() { span class="legend" { (legend(&chart)) } }
-                    span class="read" {}
+                    span class="read" aria-live="polite" {}
                 }
                 div class="live" data-chart=(number) {}
                 div class="paper" aria-hidden="true" { (PreEscaped(picture)) }
@@ -88,8 +88,10 @@ fn legend(chart: &Chart) -> Markup {
     }
     html! {
         @for (name, role) in shown { span { i class=(class(role)) {} (clean(name)) } }
-        @if chart.bands.iter().any(|band| band.late) { span { i class="late" {} "not yet answered" } }
-        @if chart.bands.iter().any(|band| !band.late) { span { i class="window" {} "transition" } }
+        @for shade in Shade::ALL {
+            @let [name, class] = shade.names();
+            @if chart.bands.iter().any(|band| band.shade == shade) { span { i class=(class) {} (name) } }
+        }
     }
 }
 
@@ -99,6 +101,7 @@ fn class(role: Role) -> &'static str {
         Role::Measured => "measured",
         Role::Error => "error",
         Role::Before => "before",
+        Role::Command => "command",
         Role::Point => "point",
         Role::Named => "named",
         Role::Guide => "guide",

@@ -7,7 +7,7 @@ const plotted = (() => {
   const specs = JSON.parse(document.getElementById('data').textContent);
   const style = getComputedStyle(root), colour = name => style.getPropertyValue('--' + name).trim();
   const clamp = (v, a, b) => Math.min(Math.max(v, a), b);
-  const LINE = { planned: 5, measured: 1.6, error: 1.6, before: 1.4, guide: 1 };
+  const LINE = { planned: 5, measured: 1.6, error: 1.6, before: 1.4, command: 1.4, guide: 1 };
 
   // Multiples of 1, 2 or 5 times a power of ten within a range.
   function ticks([low, high], most) {
@@ -18,6 +18,7 @@ const plotted = (() => {
     if (list.length < 2 && most < 16) return ticks([low, high], most + 1);
     return { list, digits: clamp(-Math.floor(Math.log10(step) + 1e-9), 0, 6) };
   }
+  const measured = (v, unit) => (unit === 'deg' ? v.toFixed(3) : number(v)) + (unit ? ' ' + unit : '');
   const number = v => Math.abs(v) >= 1000 ? v.toFixed(0) : String(+v.toPrecision(5));
 
   // First place whose coordinate is not below x; coordinates ascend.
@@ -103,7 +104,7 @@ const plotted = (() => {
       c.save();
       c.beginPath(); c.rect(left, top, width, height); c.clip();
       for (const band of spec.bands) {
-        c.fillStyle = colour(band.late ? 'late' : 'window');
+        c.fillStyle = colour(band.shade);
         c.fillRect(this.pixel(band.from), top, Math.max(this.pixel(band.to) - this.pixel(band.from), 1), height);
       }
       c.restore();
@@ -160,7 +161,7 @@ const plotted = (() => {
         return;
       }
       c.lineWidth = LINE[s.role]; c.lineJoin = 'round'; c.lineCap = 'round';
-      c.setLineDash(s.role === 'guide' ? [5, 4] : []);
+      c.setLineDash(s.role === 'guide' || s.role === 'command' ? [5, 4] : []);
       c.beginPath();
       let pen = false;
       for (let i = from; i < Math.min(to, s.y.length); i++) {
@@ -177,13 +178,15 @@ const plotted = (() => {
       if (this.hair.hidden) { this.read.textContent = ''; return; }
       this.hair.style.left = this.pixel(x) + 'px';
       const words = [], marked = this.mark !== undefined;
+      const time = /^(.*?)(?: \(([^)]*)\))?$/.exec(this.spec.x_label);
       for (const panel of this.spec.panels) for (const s of panel.series) {
         if (s.hidden || ['named', 'guide', 'band'].includes(s.role)) continue;
         const xs = this.spec.xs[s.x], i = this.index(s, x, py);
         if (i < 0) continue;
         const from = marked && !this.dots ? this.index(s, this.mark, py) : -1;
-        if (!words.length) words.push(this.spec.x_label + ' ' + number(xs[i]) + (from < 0 ? '' : ` (\u0394 ${number(xs[i] - xs[from])})`));
-        words.push((s.names ? s.names[i] : s.name) + ' ' + number(s.y[i]) + (from < 0 ? '' : ` (\u0394 ${number(s.y[i] - s.y[from])})`));
+        const both = (values, unit) => measured(values[i], unit) + (from < 0 ? '' : ` (\u0394 ${measured(values[i] - values[from], unit)})`);
+        if (!words.length) words.push(time[1] + ' ' + both(xs, time[2]));
+        words.push((s.names ? s.names[i] : s.name) + ' ' + both(s.y, (/\(([^)]*)\)$/.exec(panel.label) || [])[1]));
       }
       this.read.textContent = words.join('  ·  ');
     }

@@ -74,7 +74,7 @@
 
   // Tables sort by the column that is clicked: numbers by size, the largest first, words by the alphabet.
   const value = row => cell => {
-    const text = row.cells[cell].textContent.trim(), size = parseFloat(text);
+    const text = row.cells[cell].dataset.sort ?? row.cells[cell].textContent.trim(), size = parseFloat(text);
     return Number.isNaN(size) ? text : size;
   };
   for (const head of document.querySelectorAll('.scroll thead th')) {

@@ -265,6 +265,13 @@ impl Checks {
         Self { verdict: verdict(&list), list }
     }
 
+    /// Whether half of the correction is to go first, whatever else is to be looked at before.
+    pub fn half_first(&self) -> bool {
+        // Half of what is not to be sent is not to be sent.
+        self.verdict != Verdict::DoNotSend
+            && self.at(Level::Caution).any(|check| matches!(check.finding, Finding::Gain { .. }))
+    }
+
     /// Checks that came out so.
     pub fn at(&self, level: Level) -> impl Iterator<Item = &Check> {
         self.list.iter().filter(move |check| check.level == level)

@@ -1,17 +1,13 @@
 //! Names of what is drawn beside a piece of it: colours alone tell nothing in print.
 
-use plotters::prelude::{Circle, Color, PathElement, RGBColor, Rectangle, ShapeStyle, Text, WHITE};
+use plotters::prelude::{Circle, Color, PathElement, Rectangle, ShapeStyle, Text, WHITE};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{Area, Chart, Drawn, Paper};
-use crate::render::kit::{clean, page::chart::Role};
-
-pub(super) const BAND: RGBColor = RGBColor(232, 160, 32);
-
-/// How much of its colour a band has.
-pub(super) fn strength(late: bool) -> f64 {
-    if late { 0.45 } else { 0.13 }
-}
+use crate::render::kit::{
+    clean,
+    page::chart::{Role, Shade},
+};
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Entry {
@@ -22,7 +18,7 @@ pub(super) struct Entry {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mark {
     Series(Role),
-    Band { late: bool },
+    Band(Shade),
 }
 
 const GAP_MM: f64 = 4.0;
@@ -40,9 +36,9 @@ pub(super) fn entries(charts: &[Chart]) -> Vec<Entry> {
     {
         add(&series.name, Mark::Series(series.role));
     }
-    for (late, name) in [(true, "not yet answered"), (false, "transition")] {
-        if charts.iter().flat_map(|chart| &chart.bands).any(|band| band.late == late) {
-            add(name, Mark::Band { late });
+    for shade in Shade::ALL {
+        if charts.iter().flat_map(|chart| &chart.bands).any(|band| band.shade == shade) {
+            add(shade.names()[0], Mark::Band(shade));
         }
     }
     entries
@@ -97,8 +93,9 @@ fn piece(area: &Area, mark: Mark, [x_mm, y_mm]: [f64; 2], paper: Paper) -> Drawn
     let length_mm = piece_mm(mark);
     let at = |dx_mm: f64, dy_mm: f64| (paper.px(x_mm + dx_mm), paper.px(y_mm + dy_mm));
     match mark {
-        Mark::Band { late } => {
-            let fill = BAND.mix(strength(late)).filled();
+        Mark::Band(shade) => {
+            let (colour, strength) = shade.colour();
+            let fill = colour.mix(strength).filled();
             area.draw(&Rectangle::new([at(0.0, -1.2), at(length_mm, 1.2)], fill))?;
         }
         Mark::Series(role) if role.dots() => {

@@ -114,6 +114,23 @@ fn cut(text: &str, points: f64, room_mm: f64) -> String {
     text
 }
 
+/// A text in as many lines as it needs, one at least.
+fn wrapped(text: &str, points: f64, room_mm: f64) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in clean(text).split(' ') {
+        let Some(line) = lines.last_mut() else { break };
+        let longer = format!("{line} {word}");
+        if line.is_empty() {
+            line.push_str(word);
+        } else if Paper::taken_mm(&longer, points) <= room_mm {
+            *line = longer;
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines.iter().map(|line| cut(line, points, room_mm)).collect()
+}
+
 /// A line above a small chart.
 const HEAD_MM: f64 = 3.4;
 
@@ -142,12 +159,15 @@ pub(in crate::render) fn grid(charts: &[Chart], columns: usize, paper: Paper) ->
         [only] => format!("{}: {}", only.title, only.note),
         _ => String::new(),
     };
-    let title_mm = if paper.titled && !alone { Paper::LINE_MM } else { 0.0 };
+    let titles = wrapped(&title, Paper::NAMES, wide_mm - left_mm);
+    let title_mm = if paper.titled && !alone { Paper::LINE_MM * titles.len() as f64 } else { 0.0 };
     document([wide_mm, title_mm + legend_mm + own_mm * rows as f64], &title, paper, |root| {
         let (above, below) = root.split_vertically(paper.px(title_mm));
         if title_mm > 0.0 {
-            let words = cut(&title, Paper::NAMES, wide_mm - left_mm);
-            above.draw(&Text::new(words, (paper.px(left_mm), paper.px(0.6)), paper.text(Paper::NAMES)))?;
+            for (line, words) in titles.into_iter().enumerate() {
+                let at = (paper.px(left_mm), paper.px(0.6 + Paper::LINE_MM * line as f64));
+                above.draw(&Text::new(words, at, paper.text(Paper::NAMES)))?;
+            }
         }
         let (above, below) = below.split_vertically(paper.px(legend_mm));
         legend::draw(&above, &legend, left_mm, paper)?;

@@ -5,10 +5,7 @@ use plotters::{
     style::text_anchor::{HPos, Pos, VPos},
 };
 
-use super::{
-    Area, Chart, Drawn, Paper,
-    legend::{BAND, dot, strength},
-};
+use super::{Area, Chart, Drawn, Paper, legend::dot};
 use crate::render::kit::{
     axis::{Axis, GRID, INK, steps},
     page::chart::{Panel, Role, Series},
@@ -94,7 +91,8 @@ impl Frame<'_> {
         let told_apart = chart.bands.len() <= MOST_BANDS;
         let bands =
             chart.bands.iter().filter(|band| told_apart && band.to > from && band.from < to).map(|band| {
-                let fill = BAND.mix(strength(band.late)).filled();
+                let (colour, strength) = band.shade.colour();
+                let fill = colour.mix(strength).filled();
                 Rectangle::new([(band.from.max(from), low), (band.to.min(to), high)], fill)
             });
         frame.draw_series(bands)?;
