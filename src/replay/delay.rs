@@ -79,7 +79,8 @@ pub(super) fn planned_onset(pair: &Pair, signals: &Signals, motion: &Motion, rul
         let search = Search { sticks: false, ..search(signals, motion, signals.noisy_plan_s?) };
         onset(&pair.t_s, &pair.planned, &search, rules)
     };
-    let found = if blurred { rounded().or_else(noisy) } else { None };
+    let late = || stairs::within_band(pair, motion);
+    let found = if blurred { rounded().or_else(noisy).or_else(late) } else { None };
     found.unwrap_or_else(|| {
         let at_s = planned_onset_s(pair, signals, motion);
         Onset { at_s, interval_s: [at_s, at_s] }

@@ -62,6 +62,39 @@ pub(super) fn onset(
     Some(Onset { at_s, interval_s: [low_s - rules.onset_step_s, high_s + rules.onset_step_s] })
 }
 
+/// A first change of so many times the next one is of a plan that was written once it had gone so far.
+const JUMPS: f64 = 1.5;
+/// So many samples before it have one value.
+const HELD: usize = 3;
+/// What rises with the fourth power of time takes so many times as long to one distance as from there to twice as far, and a bit less.
+const TO_BAND: f64 = 5.0;
+
+/// When a plan left that is written only where it changed by some band: at the first change it had gone that far, and it was at rest
+/// when the value before was written. `None` of other plans.
+pub(super) fn within_band(pair: &Pair, motion: &Motion) -> Option<Onset> {
+    let (t_s, segment) = (&pair.t_s, &motion.segment);
+    if pair.planned_step.is_some() || pair.planned_velocity.is_some() {
+        return None;
+    }
+    let seen = (motion.samples.start.max(segment.start + 1)..segment.end)
+        .find(|at| change(pair, motion, *at) > 0.0)?;
+    let moving = |at: &usize| change(pair, motion, *at) > 0.0;
+    let first = (segment.start + 1..=seen).rev().take_while(moving).last()?;
+    let jump = change(pair, motion, first);
+    let held = first.checked_sub(HELD).filter(|from| *from >= segment.start)?;
+    let stands = (held + 1..first).all(|at| pair.planned[at].to_bits() == pair.planned[at - 1].to_bits());
+    let next = (first + 1 < segment.end).then(|| change(pair, motion, first + 1))?;
+    if !stands || next <= 0.0 || jump < JUMPS * next {
+        return None;
+    }
+    let along = |at: usize| f64::from(motion.direction) * (pair.planned[at] - pair.planned[first]);
+    let twice = (first + 1..segment.end).find(|at| along(*at) >= jump)?;
+    let longest_s = TO_BAND * (t_s[twice] - t_s[first]);
+    let rests_s = motion.start_s - motion.rest_before_s;
+    let earliest_s = (t_s[first] - longest_s).max(rests_s.min(t_s[first]));
+    Some(Onset { at_s: t_s[first], interval_s: [earliest_s, t_s[first]] })
+}
+
 /// The change of a plan to a sample from the one before, along a motion.
 fn change(pair: &Pair, motion: &Motion, at: usize) -> f64 {
     f64::from(motion.direction) * (pair.planned[at] - pair.planned[at - 1])
