@@ -49,6 +49,8 @@ pub(super) struct Signals<'a> {
     pub(super) peaks: [Option<f64>; 2],
     pub(super) planned: Vec<Motion>,
     pub(super) measured: Vec<Motion>,
+    /// Planned motions that may have left rest where a stretch after a gap begins, and whose starts are not seen.
+    pub(super) edge_starts: usize,
 }
 
 impl<'a> Signals<'a> {
@@ -131,11 +133,12 @@ impl<'a> Signals<'a> {
             window_s,
         };
         let (mut planned, measured) = (planned.motions(rules), measured.motions(rules));
-        let on_plan = |at: usize| (pair.planned[at] - smooth_rad[at]).abs() < sizes.displacement;
-        let from_rest = |motion: &Motion| {
-            on_plan(motion.segment.start) || leaves(pair, motion, &planned_rad_s, thresholds.planned_start)
-        };
-        begin_at_rest(&mut planned, &measured, from_rest);
+        let edge_starts = begin_at_rest(
+            &mut planned,
+            &measured,
+            |at| (pair.planned[at] - smooth_rad[at]).abs() < sizes.displacement,
+            |motion| leaves(pair, motion, &planned_rad_s, thresholds.planned_start),
+        );
         Self {
             noise,
             sample_interval_s,
@@ -151,6 +154,7 @@ impl<'a> Signals<'a> {
             peaks: peaks.0,
             planned,
             measured,
+            edge_starts,
         }
     }
 }
@@ -209,12 +213,21 @@ fn leaves(pair: &Pair, motion: &Motion, planned_rad_s: &[f64], start_speed: f64)
 }
 
 /// A log, or a stretch of it after a gap, may begin where its plan does: a plan that moves when a segment opens has just left rest if
-/// the joint stands and is still on it, or the plan is about to move.
-fn begin_at_rest(planned: &mut [Motion], measured: &[Motion], from_rest: impl Fn(&Motion) -> bool) {
+/// the joint stands and is still on it, or the plan is about to move. Returns how many after a gap may have done so and are not seen.
+fn begin_at_rest(
+    planned: &mut [Motion],
+    measured: &[Motion],
+    on_plan: impl Fn(usize) -> bool,
+    leaves: impl Fn(&Motion) -> bool,
+) -> usize {
+    let mut hidden = 0;
     for motion in planned.iter_mut().filter(|motion| motion.opens) {
         let stands = !measured.iter().any(|seen| seen.opens && seen.segment == motion.segment);
-        motion.opens = !(stands && from_rest(motion));
+        let leaves = leaves(motion);
+        motion.opens = !(stands && (leaves || on_plan(motion.segment.start)));
+        hidden += usize::from(motion.opens && motion.segment.start > 0 && (stands || leaves));
     }
+    hidden
 }
 
 /// When a plan leaves rest, by its own samples, s.

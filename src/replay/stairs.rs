@@ -69,30 +69,24 @@ const HELD: usize = 3;
 /// What rises with the fourth power of time takes so many times as long to one distance as from there to twice as far, and a bit less.
 const TO_BAND: f64 = 5.0;
 
-/// When a plan left that is written only where it changed by some band: at the first change it had gone that far, and it was at rest
-/// when the value before was written. `None` of other plans.
-pub(super) fn within_band(pair: &Pair, motion: &Motion) -> Option<Onset> {
-    let (t_s, segment) = (&pair.t_s, &motion.segment);
-    if pair.planned_step.is_some() || pair.planned_velocity.is_some() {
-        return None;
-    }
-    let seen = (motion.samples.start.max(segment.start + 1)..segment.end)
-        .find(|at| change(pair, motion, *at) > 0.0)?;
-    let moving = |at: &usize| change(pair, motion, *at) > 0.0;
-    let first = (segment.start + 1..=seen).rev().take_while(moving).last()?;
-    let jump = change(pair, motion, first);
+/// Between which instants a joint or its plan left whose values `x` are written only where they changed by some band: at the first change
+/// it had gone that far, and it was at rest when the value before was written. `None` of others.
+pub(super) fn within_band(t_s: &[f64], x: &[f64], motion: &Motion) -> Option<[f64; 2]> {
+    let segment = &motion.segment;
+    let change = |at: usize| f64::from(motion.direction) * (x[at] - x[at - 1]);
+    let seen = (motion.samples.start.max(segment.start + 1)..segment.end).find(|at| change(*at) > 0.0)?;
+    let first = (segment.start + 1..=seen).rev().take_while(|at| change(*at) > 0.0).last()?;
     let held = first.checked_sub(HELD).filter(|from| *from >= segment.start)?;
-    let stands = (held + 1..first).all(|at| pair.planned[at].to_bits() == pair.planned[at - 1].to_bits());
-    let next = (first + 1 < segment.end).then(|| change(pair, motion, first + 1))?;
+    let stands = (held + 1..first).all(|at| x[at].to_bits() == x[at - 1].to_bits());
+    let (jump, next) = (change(first), (first + 1 < segment.end).then(|| change(first + 1))?);
     if !stands || next <= 0.0 || jump < JUMPS * next {
         return None;
     }
-    let along = |at: usize| f64::from(motion.direction) * (pair.planned[at] - pair.planned[first]);
-    let twice = (first + 1..segment.end).find(|at| along(*at) >= jump)?;
+    let gone = |at: &usize| f64::from(motion.direction) * (x[*at] - x[first]) >= jump;
+    let twice = (first + 1..segment.end).find(gone)?;
     let longest_s = TO_BAND * (t_s[twice] - t_s[first]);
     let rests_s = motion.start_s - motion.rest_before_s;
-    let earliest_s = (t_s[first] - longest_s).max(rests_s.min(t_s[first]));
-    Some(Onset { at_s: t_s[first], interval_s: [earliest_s, t_s[first]] })
+    Some([(t_s[first] - longest_s).max(rests_s.min(t_s[first])), t_s[first]])
 }
 
 /// The change of a plan to a sample from the one before, along a motion.

@@ -195,7 +195,7 @@ const MONTHS: [&str; 12] = [
 /// The month that a word names, in three letters.
 fn month(word: &str) -> Option<&'static str> {
     let word = word.to_lowercase();
-    let names = |of: &&&str| of.split(' ').any(|name| name.to_lowercase() == word);
+    let names = |of: &&&str| of.split(' ').any(|name| name.eq_ignore_ascii_case(&word));
     MONTHS.iter().find(names).map(|of| &of[..3])
 }
 
@@ -214,7 +214,8 @@ fn in_figures(text: &str) -> Cow<'_, str> {
     let Some(begins) = text.find(char::is_alphabetic) else { return Cow::Borrowed(text) };
     let (before, rest) = text.split_at(begins);
     let (word, after) = rest.split_at(rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len()));
-    let Some(name) = month(word).filter(|_| word.len() > 2) else { return Cow::Borrowed(text) };
+    let name = if word.len() > 2 { month(word) } else { None };
+    let Some(name) = name else { return Cow::Borrowed(text) };
     let after = after.strip_prefix('.').filter(|after| after.starts_with(' ')).unwrap_or(after);
     Cow::Owned(format!("{before}{name}{after}"))
 }

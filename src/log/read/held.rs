@@ -191,6 +191,10 @@ fn goes_steadily(track: &Track) -> bool {
 /// Samples in a silence, at most.
 const MOST: f64 = 1e5;
 
+/// Silences of a measurement within a stretch are as long, in samples and s.
+const SHORT: f64 = 10.0;
+const SHORT_S: f64 = 0.25;
+
 /// The track with two samples more in each silence, or, `dense`, as many as elsewhere, and how many silences there are.
 fn held(track: &Track, until_s: f64, dense: bool) -> Option<(Track, u64)> {
     let step_s = track.sample_interval_s();
@@ -211,8 +215,16 @@ fn held(track: &Track, until_s: f64, dense: bool) -> Option<(Track, u64)> {
     };
     let parts = track.segments();
     for (k, part) in parts.iter().enumerate() {
-        t_s.extend_from_slice(&track.t_s()[part.clone()]);
-        position.extend_from_slice(&track.position()[part.clone()]);
+        for k in part.clone() {
+            let (at_s, before) = (track.t_s()[k], k.checked_sub(1).filter(|before| *before >= part.start));
+            // A plan that creeps is no stairs; a joint that rests briefly is.
+            let short_s = (SHORT * step_s).max(SHORT_S);
+            if let Some(before) = before.filter(|before| dense && at_s - track.t_s()[*before] > short_s) {
+                hold(track.t_s()[before], at_s, track.position()[before], &mut t_s, &mut position);
+            }
+            t_s.push(at_s);
+            position.push(track.position()[k]);
+        }
         let last = part.end.checked_sub(1)?;
         let to_s = parts.get(k + 1).map_or(until_s + step_s, |next| track.t_s()[next.start]);
         hold(track.t_s()[last], to_s, track.position()[last], &mut t_s, &mut position);

@@ -76,6 +76,33 @@ fn errors_name_what_was_found_expected_and_how_to_mend_it() {
         strangers.starts_with("planned joints (a, b) and measured joints (x) have no name in common; choose"),
         "{strangers}"
     );
+    // By name each would have the plan of its neighbour.
+    let mut apart = Log::default();
+    for (topic, first) in [("/planned_joint_states", 0), ("/joint_states", 1)] {
+        let names = [first, first + 1, first + 2].map(|k| format!("joint_{k}"));
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        apart.add(Channel::states(topic), 0..SAMPLES, |k| states(k, &names, &[0.1, 0.2, 0.3]));
+    }
+    let said = error(&apart, &ReadOptions::default());
+    assert!(
+        said.contains("counted from different numbers") && said.ends_with("--joints joint_1,joint_2"),
+        "{said}"
+    );
+    assert_eq!(
+        joints(&read_with(&apart, &options(&[], &[], &["joint_1", "joint_2"])).planned),
+        ["joint_1", "joint_2"]
+    );
+    // Names of the other topic in the order in which they move, or none.
+    for (order, given) in [([0, 1], "a,b"), ([1, 0], "b,a"), ([0, 0], "JOINT,JOINT,...")] {
+        let mut nameless = Log::default();
+        add_joint_state(&mut nameless, "/joint_states", measurement);
+        let channel = Channel::cdr("/forward_position_controller/commands", "std_msgs/msg/Float64MultiArray");
+        let sent = |k| encode::array(cdr::Kind::LittleEndian, &order.map(|joint| plan(k)[joint]));
+        nameless.add(channel, 0..SAMPLES, sent);
+        nameless.messages.sort_by_key(|message| message.log_ns);
+        let said = error(&nameless, &ReadOptions::default());
+        assert!(said.contains(&format!("--joints={given};")), "{said}");
+    }
 }
 
 #[test]
