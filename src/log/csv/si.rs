@@ -11,7 +11,6 @@ use super::{
     unit::{DEGREE, FARTHEST_DEG, FARTHEST_RAD, Measure, RADIAN, UNITLESS, Unit, parse_unit},
 };
 use crate::{
-    arm::{names_a_cylinder, names_a_slide},
     log::write::VALVE,
     remark::{Code, Remarks},
     series::JointKind,
@@ -70,9 +69,7 @@ pub(super) fn to_si(
     let unit = fallback.map_or(RADIAN, |(unit, _)| unit);
     remark_guessed(&guessed, labels, head, unit, remarks);
     let may_slide = |column: &usize| {
-        let named = |label: &Label| names_a_cylinder(&label.joint) || names_a_slide(&label.joint);
-        let reaches = cells.columns.get(column).is_some_and(|column| column.reach() > TAU);
-        unit == DEGREE && (reaches || labels.get(*column).is_some_and(named))
+        unit == DEGREE && cells.columns.get(column).is_some_and(|column| column.reach() > TAU)
     };
     remark_lengths(guessed.iter().filter(|column| may_slide(column)), labels, remarks);
     remark_grad(layout, labels, head, remarks);
@@ -260,13 +257,13 @@ fn remark_guessed(columns: &[usize], labels: &[Label], head: &Head, unit: Unit, 
     }
 }
 
-/// Offers to take columns for lengths that reach farther than joints turn, or are called cylinders.
+/// Offers to take columns for lengths that reach farther than joints turn.
 fn remark_lengths<'a>(columns: impl Iterator<Item = &'a usize>, labels: &[Label], remarks: &mut Remarks) {
     let joints: BTreeSet<&str> =
         columns.filter_map(|column| labels.get(*column)).map(|label| label.joint.as_str()).collect();
     let slides: Vec<String> = joints.iter().map(|joint| format!("{joint}=mm")).collect();
     let message = format!(
-        "joints without a unit that reach farther than a turn or are called cylinders: lengths? then import with --slides {}",
+        "joints without a unit that reach farther than a turn: lengths? then import with --slides {}",
         shell_word(&slides.join(","))
     );
     remarks.add(Code::Guessed, joints.len() as u64, message);

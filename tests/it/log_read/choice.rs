@@ -95,10 +95,11 @@ fn errors_name_what_was_found_expected_and_how_to_mend_it() {
     // Names of the other topic in the order in which they move, or none.
     for (order, given) in [([0, 1], "a,b"), ([1, 0], "b,a"), ([0, 0], "JOINT,JOINT,...")] {
         let mut nameless = Log::default();
-        add_joint_state(&mut nameless, "/joint_states", measurement);
+        let came = |k| states(k, &["a", "b"], &measurement(k));
+        nameless.add(Channel::states("/joint_states"), 0..4 * SAMPLES, came);
         let channel = Channel::cdr("/forward_position_controller/commands", "std_msgs/msg/Float64MultiArray");
         let sent = |k| encode::array(cdr::Kind::LittleEndian, &order.map(|joint| plan(k)[joint]));
-        nameless.add(channel, 0..SAMPLES, sent);
+        nameless.add(channel, 0..4 * SAMPLES, sent);
         nameless.messages.sort_by_key(|message| message.log_ns);
         let said = error(&nameless, &ReadOptions::default());
         assert!(said.contains(&format!("--joints={given};")), "{said}");
