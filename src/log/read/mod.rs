@@ -13,7 +13,6 @@ mod extract;
 mod followed;
 mod frames;
 mod held;
-mod in_order;
 mod indexed;
 mod joints;
 mod jumps;

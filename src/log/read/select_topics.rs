@@ -6,7 +6,6 @@ use super::{
     candidates::{COMMAND, Candidate, candidates, of_sides},
     content::{Content, Extracted},
     frames,
-    in_order::named_in_order,
     topics::{columns_named, missing},
 };
 use crate::{
@@ -135,15 +134,12 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
     // The first of the nearest.
     let first = alike.rev().max_by_key(|c| near(c)).or(best);
     let Some(first) = first else {
-        let counted =
-            |one: &&Candidate| one.joints.iter().zip(1..).all(|(name, k)| *name == format!("joint_{k}"));
-        let in_order = |numbers: &[Candidate], named: &[Candidate]| {
-            named_in_order(extracted, numbers.first().filter(counted)?, named)
-        };
-        let given = in_order(&planned, &measured).or_else(|| in_order(&measured, &planned));
-        // Which number is which joint nobody says, unless they move alike.
-        let given = given.map_or_else(|| "JOINT,JOINT,...".to_owned(), |names| names.join(","));
         let [planned, measured] = [names_of(&planned), names_of(&measured)];
+        // Which number is which of several joints nobody says.
+        let given = match [&planned[..], &measured[..]] {
+            [["joint_1"], [name]] | [[name], ["joint_1"]] => (*name).to_owned(),
+            _ => "JOINT,JOINT,...".to_owned(),
+        };
         let [planned, measured] = [planned, measured].map(|names| names.join(", "));
         return Err(LogError::NoCommonJoint { planned, measured, given });
     };

@@ -92,8 +92,8 @@ fn errors_name_what_was_found_expected_and_how_to_mend_it() {
         joints(&read_with(&apart, &options(&[], &[], &["joint_1", "joint_2"])).planned),
         ["joint_1", "joint_2"]
     );
-    // Names of the other topic in the order in which they move, or none.
-    for (order, given) in [([0, 1], "a,b"), ([1, 0], "b,a"), ([0, 0], "JOINT,JOINT,...")] {
+    // Which number is which joint nobody says.
+    for order in [[0, 1], [1, 0]] {
         let mut nameless = Log::default();
         let came = |k| states(k, &["a", "b"], &measurement(k));
         nameless.add(Channel::states("/joint_states"), 0..4 * SAMPLES, came);
@@ -102,7 +102,7 @@ fn errors_name_what_was_found_expected_and_how_to_mend_it() {
         nameless.add(channel, 0..4 * SAMPLES, sent);
         nameless.messages.sort_by_key(|message| message.log_ns);
         let said = error(&nameless, &ReadOptions::default());
-        assert!(said.contains(&format!("--joints={given};")), "{said}");
+        assert!(said.contains("--joints=JOINT,JOINT,...;"), "{said}");
     }
 }
 
