@@ -13,6 +13,7 @@ use std::{
 
 use super::{CliError, udp};
 use crate::{
+    log::CsvOptions,
     remark::Remarks,
     workflow::record::{Came, Senders},
 };
@@ -29,6 +30,8 @@ pub(super) struct Lines {
     until: Option<Instant>,
     /// Lines that are still taken after the end: those that wait.
     left: usize,
+    /// What was kept back until the end.
+    rest: Option<std::vec::IntoIter<Came>>,
     senders: Arc<Mutex<Senders>>,
     /// Where packets come, and how many of any sender had been lost there before.
     port: Option<(u16, u64)>,
@@ -39,8 +42,12 @@ impl Iterator for Lines {
 
     fn next(&mut self) -> Option<Self::Item> {
         if super::interrupt::is_asked() || self.until.is_some_and(|until| Instant::now() >= until) {
-            self.left = self.left.checked_sub(1)?;
-            return self.from.try_recv().ok();
+            let waits = self.left > 0 && self.rest.is_none();
+            if let Some(came) = self.from.try_recv().ok().filter(|_| waits) {
+                self.left -= 1;
+                return Some(came);
+            }
+            return self.rest.get_or_insert_with(|| held(&self.senders).rest().into_iter()).next();
         }
         match self.from.recv_timeout(Duration::from_millis(100)) {
             Ok(came) => Some(came),
@@ -51,11 +58,15 @@ impl Iterator for Lines {
 }
 
 impl Lines {
-    /// Those of packets at an address, or of standard input, until an instant.
-    pub(super) fn of(address: Option<&str>, until: Option<Instant>) -> Result<Self, CliError> {
+    /// Those of packets at an address, understood by the options, or of standard input, until an instant.
+    pub(super) fn of(
+        address: Option<&str>,
+        options: &CsvOptions,
+        until: Option<Instant>,
+    ) -> Result<Self, CliError> {
         let (send, from) = sync_channel(WAITING);
-        let senders = Arc::default();
-        let mut lines = Self { from, until, left: WAITING, senders, port: None };
+        let senders = Arc::new(Mutex::new(Senders::new(options.clone())));
+        let mut lines = Self { from, until, left: WAITING, rest: None, senders, port: None };
         match address {
             Some(address) => {
                 let failed = CliError::step(format!("cannot listen at {address}"));
@@ -91,12 +102,9 @@ fn packets(socket: &UdpSocket, senders: &Mutex<Senders>, send: &SyncSender<Came>
     let begun = Instant::now();
     let mut packet = vec![0; PACKET];
     while let Ok((length, sender)) = socket.recv_from(&mut packet) {
-        if !held(senders).takes(sender, begun.elapsed().as_secs_f64()) {
-            continue;
-        }
-        let lines = packet[..length].split(|byte| *byte == b'\n');
-        for line in lines.filter(|line| !line.trim_ascii().is_empty()) {
-            if send.send(Came::Line(line.to_vec())).is_err() {
+        let lines = held(senders).take(sender, begun.elapsed().as_secs_f64(), &packet[..length]);
+        for line in lines {
+            if send.send(line).is_err() {
                 return;
             }
         }

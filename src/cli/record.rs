@@ -131,7 +131,7 @@ impl Run for Args {
         // An end that no clock reaches is none.
         let length = self.seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
         let until = length.and_then(|length| Instant::now().checked_add(length));
-        let mut lines = Lines::of(self.udp.as_deref(), until)?;
+        let mut lines = Lines::of(self.udp.as_deref(), &request.options, until)?;
         let bar = progress(None, "{spinner} {elapsed}  {msg}");
         bar.enable_steady_tick(Duration::from_millis(200));
         let mut shown = Instant::now();

@@ -87,6 +87,12 @@ pub enum LogError {
     )]
     NoCommonJoint { planned: String, measured: String, given: String },
     #[error(
+        "planned joints ({planned}) and measured joints ({measured}) are counted from different numbers: by their names each would be \
+         paired with its neighbour; `hydrotrace import LOG -o run.mcap` says the line that pairs them in their order; if the names are \
+         right, say --joints {common}"
+    )]
+    NumberedApart { planned: String, measured: String, common: String },
+    #[error(
         "{topic} holds poses of a tool, and the log no angles of joints: what is fitted and sent is of joints; `hydrotrace report` compares \
          poses, too"
     )]

@@ -55,7 +55,12 @@ pub(super) fn measured_onset(pair: &Pair, signals: &Signals, motion: &Motion, ru
     if motion.reversal {
         return at_crossing;
     }
-    onset_of(pair, &search(signals, motion, window_s), rules).unwrap_or(at_crossing)
+    let found = onset_of(pair, &search(signals, motion, window_s), rules).unwrap_or(at_crossing);
+    let band_s =
+        stairs::within_band(&pair.t_s, &pair.measured, motion).filter(|_| signals.noise.lsb.is_none());
+    let Some([earliest_s, shows_s]) = band_s else { return found };
+    let [low_s, high_s] = found.interval_s;
+    Onset { at_s: found.at_s.min(shows_s), interval_s: [low_s.min(earliest_s), high_s.max(shows_s)] }
 }
 
 /// Where the onset of a motion is looked for: about where it passes the stop threshold.
@@ -79,7 +84,12 @@ pub(super) fn planned_onset(pair: &Pair, signals: &Signals, motion: &Motion, rul
         let search = Search { sticks: false, ..search(signals, motion, signals.noisy_plan_s?) };
         onset(&pair.t_s, &pair.planned, &search, rules)
     };
-    let found = if blurred { rounded().or_else(noisy) } else { None };
+    let late = || {
+        let smooth = pair.planned_step.is_none() && pair.planned_velocity.is_none();
+        let interval_s = stairs::within_band(&pair.t_s, &pair.planned, motion).filter(|_| smooth)?;
+        Some(Onset { at_s: interval_s[1], interval_s })
+    };
+    let found = if blurred { rounded().or_else(noisy).or_else(late) } else { None };
     found.unwrap_or_else(|| {
         let at_s = planned_onset_s(pair, signals, motion);
         Onset { at_s, interval_s: [at_s, at_s] }

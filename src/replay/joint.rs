@@ -104,9 +104,28 @@ pub(super) fn joint<'a>(pair: &'a Pair, rules: &Rules) -> Option<Joint<'a>> {
         stops: stops.iter().filter(|s| s.planned_s.is_some()).count(),
         unanswered_starts: count(Answer::Never),
         undated_starts: count(Answer::Unclear) + count(Answer::Creeps),
-        unplanned_starts: measured.len() - matched,
+        unplanned_starts: measured.len() - matched - at_edges(&signals.planned, &measured, &answers, rules),
+        edge_starts: signals.edge_starts,
     };
     Some(Joint { pair, replay, transitions, stops, blocks, moving })
+}
+
+/// How many measured starts, of those that answer none, follow a planned one that was not seen.
+fn at_edges(
+    planned: &[Motion],
+    measured: &[(&Motion, Onset)],
+    answers: &[Option<usize>],
+    rules: &Rules,
+) -> usize {
+    let follows = |seen: &Motion| {
+        planned.iter().any(|plan| {
+            let until_s = (plan.start_s + rules.transition_window_s).min(plan.end_s) + rules.match_after_s;
+            let same = plan.opens && plan.segment == seen.segment && plan.direction == seen.direction;
+            same && (plan.start_s - rules.match_before_s..=until_s).contains(&seen.start_s)
+        })
+    };
+    let free = |k: &usize| !answers.contains(&Some(*k));
+    (0..measured.len()).filter(free).filter(|k| follows(measured[*k].0)).count()
 }
 
 /// Travel of a motion, rad.

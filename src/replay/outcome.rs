@@ -141,6 +141,9 @@ pub struct JointReplay {
     pub undated_starts: usize,
     /// Measured starts without a planned start.
     pub unplanned_starts: usize,
+    /// Planned motions that may have left rest where a stretch after a gap begins, and whose starts are not seen.
+    #[serde(skip)]
+    pub edge_starts: usize,
 }
 
 /// How much of the squared error is gone when the plan is shifted by the lag.

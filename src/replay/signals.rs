@@ -49,6 +49,8 @@ pub(super) struct Signals<'a> {
     pub(super) peaks: [Option<f64>; 2],
     pub(super) planned: Vec<Motion>,
     pub(super) measured: Vec<Motion>,
+    /// Planned motions that may have left rest where a stretch after a gap begins, and whose starts are not seen.
+    pub(super) edge_starts: usize,
 }
 
 impl<'a> Signals<'a> {
@@ -131,8 +133,12 @@ impl<'a> Signals<'a> {
             window_s,
         };
         let (mut planned, measured) = (planned.motions(rules), measured.motions(rules));
-        let on_plan = |at: usize| (pair.planned[at] - smooth_rad[at]).abs() < sizes.displacement;
-        begin_at_rest(&mut planned, &measured, on_plan);
+        let edge_starts = begin_at_rest(
+            &mut planned,
+            &measured,
+            |at| (pair.planned[at] - smooth_rad[at]).abs() < sizes.displacement,
+            |motion| leaves(pair, motion, &planned_rad_s, thresholds.planned_start),
+        );
         Self {
             noise,
             sample_interval_s,
@@ -148,6 +154,7 @@ impl<'a> Signals<'a> {
             peaks: peaks.0,
             planned,
             measured,
+            edge_starts,
         }
     }
 }
@@ -187,13 +194,40 @@ fn plan_noise(pair: &Pair, (sizes, sample_interval_s): (&Sizes, f64), rules: &Ru
     (rules.start_sigmas * speed > sizes.start_speed).then_some(sigma)
 }
 
-/// A log may begin where its plan does: a plan that moves when a segment opens has just left rest if the joint is still on
-/// it and stands.
-fn begin_at_rest(planned: &mut [Motion], measured: &[Motion], on_plan: impl Fn(usize) -> bool) {
+/// A plan is as good as at rest at this share of the speed that it reaches.
+const AT_REST: f64 = 0.05;
+
+/// Whether a plan that moves when its segment opens begins there next to rest, by its first two samples: one that is sent during
+/// motions alone does.
+fn leaves(pair: &Pair, motion: &Motion, planned_rad_s: &[f64], start_speed: f64) -> bool {
+    let first = motion.segment.start;
+    let speed = match &pair.planned_velocity {
+        Some(given) => given[first],
+        None if first + 1 < motion.segment.end => {
+            (pair.planned[first + 1] - pair.planned[first]) / (pair.t_s[first + 1] - pair.t_s[first])
+        }
+        None => return false,
+    };
+    let most = motion.samples.clone().map(|at| planned_rad_s[at].abs()).fold(0.0, f64::max);
+    speed.abs() <= start_speed.max(AT_REST * most)
+}
+
+/// A log, or a stretch of it after a gap, may begin where its plan does: a plan that moves when a segment opens has just left rest if
+/// the joint stands and is still on it, or the plan is about to move. Returns how many after a gap may have done so and are not seen.
+fn begin_at_rest(
+    planned: &mut [Motion],
+    measured: &[Motion],
+    on_plan: impl Fn(usize) -> bool,
+    leaves: impl Fn(&Motion) -> bool,
+) -> usize {
+    let mut hidden = 0;
     for motion in planned.iter_mut().filter(|motion| motion.opens) {
         let stands = !measured.iter().any(|seen| seen.opens && seen.segment == motion.segment);
-        motion.opens = !(stands && on_plan(motion.segment.start));
+        let leaves = leaves(motion);
+        motion.opens = !(stands && (leaves || on_plan(motion.segment.start)));
+        hidden += usize::from(motion.opens && motion.segment.start > 0 && (stands || leaves));
     }
+    hidden
 }
 
 /// When a plan leaves rest, by its own samples, s.

@@ -62,6 +62,33 @@ pub(super) fn onset(
     Some(Onset { at_s, interval_s: [low_s - rules.onset_step_s, high_s + rules.onset_step_s] })
 }
 
+/// A first change of so many times the next one is of a plan that was written once it had gone so far.
+const JUMPS: f64 = 1.5;
+/// So many samples before it have one value.
+const HELD: usize = 3;
+/// What rises with the fourth power of time takes so many times as long to one distance as from there to twice as far, and a bit less.
+const TO_BAND: f64 = 5.0;
+
+/// Between which instants a joint or its plan left whose values `x` are written only where they changed by some band: at the first change
+/// it had gone that far, and it was at rest when the value before was written. `None` of others.
+pub(super) fn within_band(t_s: &[f64], x: &[f64], motion: &Motion) -> Option<[f64; 2]> {
+    let segment = &motion.segment;
+    let change = |at: usize| f64::from(motion.direction) * (x[at] - x[at - 1]);
+    let seen = (motion.samples.start.max(segment.start + 1)..segment.end).find(|at| change(*at) > 0.0)?;
+    let first = (segment.start + 1..=seen).rev().take_while(|at| change(*at) > 0.0).last()?;
+    let held = first.checked_sub(HELD).filter(|from| *from >= segment.start)?;
+    let stands = (held + 1..first).all(|at| x[at].to_bits() == x[at - 1].to_bits());
+    let (jump, next) = (change(first), (first + 1 < segment.end).then(|| change(first + 1))?);
+    if !stands || next <= 0.0 || jump < JUMPS * next {
+        return None;
+    }
+    let gone = |at: &usize| f64::from(motion.direction) * (x[*at] - x[first]) >= jump;
+    let twice = (first + 1..segment.end).find(gone)?;
+    let longest_s = TO_BAND * (t_s[twice] - t_s[first]);
+    let rests_s = motion.start_s - motion.rest_before_s;
+    Some([(t_s[first] - longest_s).max(rests_s.min(t_s[first])), t_s[first]])
+}
+
 /// The change of a plan to a sample from the one before, along a motion.
 fn change(pair: &Pair, motion: &Motion, at: usize) -> f64 {
     f64::from(motion.direction) * (pair.planned[at] - pair.planned[at - 1])

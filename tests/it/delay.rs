@@ -129,3 +129,55 @@ fn a_log_that_begins_with_its_plan_shows_the_first_start() {
         }
     }
 }
+
+#[test]
+fn a_plan_that_is_written_once_it_changed_by_a_band_left_before_its_first_value() {
+    for band_deg in [0.02, 0.05, 0.2] {
+        // Each motion leaves at a whole second.
+        let ease = |t: f64| {
+            let x = (t / 2.0).clamp(0.0, 1.0);
+            10.0 * x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+        };
+        let course = |t: f64| DEGREE_RAD * (ease(t - 1.0) - ease(t - 6.0));
+        let t_s: Vec<f64> = (0..1000).map(|k| f64::from(k) * 0.01).collect();
+        let mut held = course(0.0);
+        let written: Vec<f64> = t_s
+            .iter()
+            .map(|t| {
+                if (course(*t) - held).abs() > band_deg * DEGREE_RAD {
+                    held = course(*t);
+                }
+                held
+            })
+            .collect();
+        // Lines between values that are written soon after another, as a reader draws them.
+        let mut planned = written.clone();
+        let changes: Vec<usize> =
+            (1..written.len()).filter(|k| written[*k].to_bits() != written[k - 1].to_bits()).collect();
+        for two in changes.windows(2).filter(|two| two[1] - two[0] < 20) {
+            for at in two[0]..two[1] {
+                let share = (at - two[0]) as f64 / (two[1] - two[0]) as f64;
+                planned[at] = written[two[0]] + share * (written[two[1]] - written[two[0]]);
+            }
+        }
+        let measured = t_s.iter().map(|t| course(t - 0.15)).collect();
+        let found = of(&recorded(t_s.clone(), planned, measured, std::iter::once(0..t_s.len()).collect()));
+        assert_eq!(found.transitions.len(), 2, "{band_deg} deg");
+        for start in &found.transitions {
+            let [low_s, high_s] = start.onset_delay_interval_s.unwrap();
+            assert!(low_s <= 0.15 && 0.15 <= high_s, "{band_deg} deg: {low_s} to {high_s}");
+        }
+    }
+}
+
+#[test]
+fn a_stretch_that_begins_with_its_plan_at_rest_shows_its_start_beside_an_offset() {
+    let ease = |t: f64| {
+        let x = (t / 2.0).clamp(0.0, 1.0);
+        10.0 * DEGREE_RAD * x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+    };
+    for (begins_s, starts) in [(0.0, 1), (0.6, 0)] {
+        let found = of(&sampled(600, |t| ease(t + begins_s), |t| ease(t - 0.3) + 1.0 * DEGREE_RAD));
+        assert_eq!(found.joints[0].starts, starts, "{begins_s} s");
+    }
+}

@@ -9,8 +9,10 @@ use super::{
 };
 
 /// Words for the plan less the measurement.
-const ERRORS: [&str; 8] =
-    ["error", "err", "deviation", "abweichung", "schleppfehler", "schleppabstand", "erreur", "误差"];
+const ERRORS: [&str; 15] = [
+    "error", "err", "deviation", "abweichung", "regelabweichung", "regeldifferenz", "schleppfehler",
+    "schleppabstand", "erreur", "écart", "errore", "lag", "diff", "误差", "ошибка",
+];
 
 /// What a caller names as the side of a joint that a word means.
 pub(super) fn named_as<'a>(
@@ -33,7 +35,10 @@ pub(super) fn by_meaning(name: &str, joint: &str, labels: &[Label]) -> Option<us
         Meaning::Role(role) => label.is_joint && label.key == joint && label.role == Some(role),
         Meaning::Foreign => {
             let said = |text: &str| label.words.iter().any(|word| word == text);
-            said(&wanted.text.to_lowercase()) && words(&joint).iter().all(|word| said(word.text))
+            let wanted = wanted.text.to_lowercase();
+            // `error` is whatever a header calls it.
+            let is_error = wanted == ERRORS[0] && ERRORS.iter().any(|word| said(word));
+            (said(&wanted) || is_error) && !label.is_joint && words(&joint).iter().all(|word| said(word.text))
         }
         _ => false,
     };

@@ -33,7 +33,11 @@ impl Look<'_> {
             SELDOM * ns.windows(2).filter(|two| two[0] >= two[1]).count() <= ns.len()
         };
         let time = columns.clone().find(rises);
-        let first = time.map_or("--rate HZ".to_owned(), |column| format!("--time '#{}'", column + 1));
+        // What counts the rows says no time.
+        let doubt = |column: usize| self.rising(column).and_then(|found| found.doubt);
+        let counts = |column: &usize| doubt(*column).is_some_and(|doubt| doubt.contains("--rate HZ"));
+        let clock = time.filter(|column| !counts(column));
+        let first = clock.map_or("--rate HZ".to_owned(), |column| format!("--time '#{}'", column + 1));
         let others: Vec<usize> = columns.filter(|column| Some(*column) != time).collect();
         let values = self.values(text, &others);
         let reach = |columns: &[usize]| {

@@ -1,5 +1,7 @@
 //! Dates and times of day, as people and machines write them.
 
+use std::borrow::Cow;
+
 use chrono::format::{Item, Parsed, StrftimeItems, parse};
 
 use super::elapsed;
@@ -27,7 +29,7 @@ pub(super) enum Part {
 }
 
 /// Tried in this order: of two that fit, the first is meant more often.
-const FORMS: [(&str, &str, Part); 33] = [
+const FORMS: [(&str, &str, Part); 35] = [
     ("%Y-%m-%d %H:%M:%S%.f%#z", "yyyy-mm-dd hh:mm:ss with zone", Part::Zoned),
     ("%Y-%m-%d %H:%M:%S%.f", "yyyy-mm-dd hh:mm:ss", Part::Local),
     ("%Y/%m/%d %H:%M:%S%.f", "yyyy/mm/dd hh:mm:ss", Part::Local),
@@ -43,6 +45,8 @@ const FORMS: [(&str, &str, Part); 33] = [
     ("%d-%b-%y %I:%M:%S%.f %p", "dd-mon-yy hh:mm:ss am/pm", Part::Local),
     ("%d-%b-%Y %H:%M:%S%.f", "dd-mon-yyyy hh:mm:ss", Part::Local),
     ("%d-%b-%y %H:%M:%S%.f", "dd-mon-yy hh:mm:ss", Part::Local),
+    ("%d %b %Y %H:%M:%S%.f", "dd mon yyyy hh:mm:ss", Part::Local),
+    ("%d. %b %Y %H:%M:%S%.f", "dd. mon yyyy hh:mm:ss", Part::Local),
     ("%d-%m-%Y %H:%M:%S%.f", "dd-mm-yyyy hh:mm:ss", Part::Local),
     ("%m/%d/%Y %I:%M:%S%.f %p", "mm/dd/yyyy hh:mm:ss am/pm", Part::Local),
     ("%d/%m/%Y %I:%M:%S%.f %p", "dd/mm/yyyy hh:mm:ss am/pm", Part::Local),
@@ -129,11 +133,8 @@ fn begins_with_day(text: &str) -> bool {
 
 /// Whether a text has a time of day beside the name of a month, as `31-Aug-2024 10:59:50` does.
 pub(super) fn names_month(text: &str) -> bool {
-    const MONTHS: [&str; 12] =
-        ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
-    let is_month = |word: &str| MONTHS.iter().any(|month| word.eq_ignore_ascii_case(month));
     text.contains(':')
-        && text.split(|c: char| !c.is_alphabetic()).any(is_month)
+        && text.split(|c: char| !c.is_alphabetic()).any(|word| month(word).is_some())
         && !DateForm::fitting(&std::iter::once(text.as_bytes())).is_empty()
 }
 
@@ -141,6 +142,7 @@ pub(super) fn names_month(text: &str) -> bool {
 /// write as a comma, a semicolon or a third colon.
 fn plain(text: &str) -> Option<String> {
     const LONGEST: usize = 48;
+    let text = &*in_figures(text);
     let begins = text.starts_with(|c: char| c.is_ascii_digit()) || begins_with_day(text);
     if text.len() > LONGEST || !begins {
         return None;
@@ -174,6 +176,50 @@ fn padded(plain: &str, most: usize) -> Option<String> {
     (digits <= most).then(|| format!("{whole}{:0>most$}{}", &behind[..digits], &behind[digits..]))
 }
 
+/// What the months are called, and first how a date form knows them.
+const MONTHS: [&str; 12] = [
+    "Jan january januar janvier janv enero ene gennaio gen januari",
+    "Feb february februar février févr fevrier febrero febbraio februari",
+    "Mar march märz mär mrz mars marzo maart mrt",
+    "Apr april avril avr abril abr aprile",
+    "May mai mayo maggio mag mei maj",
+    "Jun june juni juin junio giugno giu",
+    "Jul july juli juillet juil julio luglio lug",
+    "Aug august août aout agosto ago augustus augusti",
+    "Sep sept september septembre septiembre settembre",
+    "Oct okt october oktober octobre octubre ottobre ott",
+    "Nov november novembre noviembre",
+    "Dec dez december dezember décembre déc diciembre dic dicembre",
+];
+
+/// The month that a word names, in three letters.
+fn month(word: &str) -> Option<&'static str> {
+    let word = word.to_lowercase();
+    let names = |of: &&&str| of.split(' ').any(|name| name.eq_ignore_ascii_case(&word));
+    MONTHS.iter().find(names).map(|of| &of[..3])
+}
+
+/// A date with its month in three letters of English, without a point behind, and with the signs of Chinese and Japanese as others write
+/// them: `16. Okt. 2025` as `16. Oct 2025`.
+fn in_figures(text: &str) -> Cow<'_, str> {
+    if text.contains('年') {
+        let sign = |c: char| match c {
+            '年' | '月' => Some('-'),
+            '時' | '时' | '分' => Some(':'),
+            '日' | '秒' => None,
+            other => Some(other),
+        };
+        return Cow::Owned(text.chars().filter_map(sign).collect());
+    }
+    let Some(begins) = text.find(char::is_alphabetic) else { return Cow::Borrowed(text) };
+    let (before, rest) = text.split_at(begins);
+    let (word, after) = rest.split_at(rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len()));
+    let name = if word.len() > 2 { month(word) } else { None };
+    let Some(name) = name else { return Cow::Borrowed(text) };
+    let after = after.strip_prefix('.').filter(|after| after.starts_with(' ')).unwrap_or(after);
+    Cow::Owned(format!("{before}{name}{after}"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -188,15 +234,35 @@ mod tests {
     fn one_instant_in_every_spelling_is_one_instant() {
         const NOON_NS: i64 = 1_750_000_000_020_000_000;
         for text in [
-            "2025-06-15T15:06:40.020Z", "2025-06-15 15:06:40,020", "2025-06-15T17:06:40.02+02:00",
-            "2025-06-15T17:06:40.02+0200", "2025-06-15 15:06:40.020 UTC", "2025/06/15 15:06:40.020",
-            "15.06.2025 15:06:40,020", "15.06.2025 15:06:40:020", "15/06/2025 15:06:40.020",
-            "06/15/2025 15:06:40.020", "06/15/2025 03:06:40.020 PM", "2025-06-15-15:06:40.020",
-            "20250615 150640.020", "20250615T150640.020Z", "15.06.25 15:06:40.020",
-            "15-Jun-2025 15:06:40.020", "15-Jun-2025 03:06:40.020 PM", "15-Jun-25 3:06:40.020 pm",
-            "15/06/25 15:06:40.020", "06/15/25 15:06:40.020", "06/15/25 03:06:40.020 PM",
-            "Sun Jun 15 15:06:40.020 2025", "15-JUN-25 15:06:40,020", "20250615150640020",
+            "2025-06-15T15:06:40.020Z",
+            "2025-06-15 15:06:40,020",
+            "2025-06-15T17:06:40.02+02:00",
+            "2025-06-15T17:06:40.02+0200",
+            "2025-06-15 15:06:40.020 UTC",
+            "2025/06/15 15:06:40.020",
+            "15.06.2025 15:06:40,020",
+            "15.06.2025 15:06:40:020",
+            "15/06/2025 15:06:40.020",
+            "06/15/2025 15:06:40.020",
+            "06/15/2025 03:06:40.020 PM",
+            "2025-06-15-15:06:40.020",
+            "20250615 150640.020",
+            "20250615T150640.020Z",
+            "15.06.25 15:06:40.020",
+            "15-Jun-2025 15:06:40.020",
+            "15-Jun-2025 03:06:40.020 PM",
+            "15-Jun-25 3:06:40.020 pm",
+            "15/06/25 15:06:40.020",
+            "06/15/25 15:06:40.020",
+            "06/15/25 03:06:40.020 PM",
+            "Sun Jun 15 15:06:40.020 2025",
+            "15-JUN-25 15:06:40,020",
+            "20250615150640020",
             "20250615150640.02",
+            "15 Jun 2025 15:06:40.020",
+            "15. Juni 2025 15:06:40,020",
+            "15 juin 2025 15:06:40.020",
+            "2025年06月15日 15時06分40.020000秒",
         ] {
             assert_eq!(ns(text).0, NOON_NS, "{text}");
         }

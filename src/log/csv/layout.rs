@@ -10,7 +10,10 @@ use super::{
     label::{Label, PLACE, QUATERNION, is_place, label},
     offered::offered,
     options::option,
-    pairing::{Draft, Partners, by_last_part, numbered_apart, plan_beside_measured, without_shared_words},
+    pairing::{
+        Draft, Partners, by_last_part, numbered_apart, plan_beside_measured, remark_filtered,
+        without_shared_words, without_speeds,
+    },
     repeats::drop_repeats,
     unit::{Measure, Unit},
 };
@@ -89,6 +92,7 @@ pub(super) fn lay_out(
     without_orientation(head, &mut drafts, remarks)?;
     plan_beside_measured(head, &mut drafts, remarks);
     drop_repeats((text, separator), head, labels, &mut drafts, remarks)?;
+    without_speeds(head, &mut drafts, |column| explicit.contains(&column), remarks);
     without_shared_words(&mut drafts);
     by_last_part(&mut drafts, remarks);
     let joints = joints(head, labels, &drafts, remarks)?;
@@ -98,6 +102,12 @@ pub(super) fn lay_out(
         Some(Use { column, role, quantity, joint: place(&draft.key)? })
     });
     let uses: Vec<Use> = uses.collect();
+    let is_free = |one: &&Use| {
+        one.role == Role::Measured && one.quantity == Quantity::Position && !explicit.contains(&one.column)
+    };
+    let measured: Vec<(usize, &str)> =
+        uses.iter().filter(is_free).map(|one| (one.column, joints[one.joint].1.as_str())).collect();
+    remark_filtered(head, labels, &measured, remarks);
     let mut interfaces = Vec::new();
     for (name, columns) in &options.interfaces {
         for (joint, column) in columns {

@@ -2,7 +2,7 @@
 
 use super::{
     read::{LATE, REPEATED},
-    time::TimeSource,
+    time::{TimeSource, Wraps},
 };
 use crate::remark::{Code, Remarks};
 
@@ -26,6 +26,7 @@ pub(super) struct LiveClock {
     repeated: u64,
     late: u64,
     set_back: u64,
+    wraps: Wraps,
 }
 
 impl Default for LiveClock {
@@ -42,6 +43,7 @@ impl Default for LiveClock {
             repeated: 0,
             late: 0,
             set_back: 0,
+            wraps: Wraps::default(),
         }
     }
 }
@@ -52,12 +54,17 @@ impl LiveClock {
 
     /// The same at the same time of the same day, with nothing counted.
     pub(super) fn going_on(&self) -> Self {
-        Self { day_ns: self.day_ns, before_ns: self.before_ns, ..Self::default() }
+        Self {
+            day_ns: self.day_ns,
+            before_ns: self.before_ns,
+            wraps: self.wraps.going_on(),
+            ..Self::default()
+        }
     }
 
     /// The stamp on the clock of the log: times of a day go on after midnight, others count from a fixed instant.
     pub(super) fn settled(&mut self, source: &TimeSource, ns: i64, absolute: bool) -> i64 {
-        let mut one = [ns];
+        let mut one = [self.wraps.undone(source, ns)];
         if source.is_of_day() {
             self.day_ns += TimeSource::DAY_NS * i64::from(source.next_day(self.before_ns, ns));
             self.before_ns = ns;
@@ -102,6 +109,7 @@ impl LiveClock {
         remarks.add(Code::Reordered, self.late, LATE);
         let message = "places where the clock goes back; a report splits the run there";
         remarks.add(Code::ClockJump, self.set_back, message);
+        self.wraps.remark(remarks);
     }
 }
 

@@ -143,6 +143,21 @@ impl JsonLines {
         cells
     }
 
+    /// Whether a line has a number with a key that came in none before.
+    pub fn has_new_key(&self, line: &[u8]) -> bool {
+        let is_new = |(key, cell): &(String, String)| {
+            !self.keys.contains(key)
+                && !self.late.contains_key(key)
+                && number(cell.as_bytes(), false).is_some()
+        };
+        cells(line).is_some_and(|cells| self.of_joint(cells).iter().any(is_new))
+    }
+
+    /// Nothing gathered yet, with columns for all keys so far.
+    pub fn anew(&self) -> Self {
+        Self::expecting(self.keys.iter().cloned(), self.time.clone())
+    }
+
     /// Ends gathering: columns are settled.
     pub fn settle(&mut self) {
         self.gathered.clear();

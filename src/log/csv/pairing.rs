@@ -89,6 +89,80 @@ pub(super) fn plan_beside_measured(head: &Head, drafts: &mut [Draft], remarks: &
     }
 }
 
+/// Letters of a position beside which `v` is the speed of the same joint.
+const PLACES: [&str; 3] = ["s", "q", "phi"];
+
+/// Columns that only a letter tells from the positions of a joint, `J1 v_soll` beside `J1 s_soll`, are its speeds, and left out.
+pub(super) fn without_speeds(
+    head: &Head,
+    drafts: &mut Vec<Draft>,
+    given: impl Fn(usize) -> bool,
+    remarks: &mut Remarks,
+) {
+    let position = |draft: &Draft| draft.quantity == Quantity::Position;
+    let of_speed = |draft: &Draft| -> Option<(usize, String)> {
+        let parts: Vec<&str> = draft.key.split('_').collect();
+        let at = parts.iter().position(|part| *part == "v")?;
+        let beside = |place: &str| {
+            let mut own = parts.clone();
+            own[at] = place;
+            own.retain(|part| !part.is_empty());
+            let key = own.join("_");
+            let found = drafts
+                .iter()
+                .find(|other| other.key == key && other.role == draft.role && position(other))?;
+            Some((draft.column, found.joint.clone()))
+        };
+        PLACES.into_iter().chain([""]).find_map(beside)
+    };
+    let found: Vec<(usize, String)> =
+        drafts.iter().filter(|draft| position(draft) && !given(draft.column)).filter_map(of_speed).collect();
+    let Some((first, joint)) = found.first() else { return };
+    let message = format!(
+        "columns such as {:?}, taken for speeds of {joint} and left out; else say what they are with --planned JOINT=COLUMN,... \
+         --measured JOINT=COLUMN,..., or --planned-velocity and --measured-velocity",
+        head.names[*first]
+    );
+    remarks.add(Code::Guessed, found.len() as u64, message);
+    drafts.retain(|draft| found.iter().all(|(column, _)| draft.column != *column));
+}
+
+/// Says that measured columns in use are filtered, where others are not: a filter is a delay.
+pub(super) fn remark_filtered(
+    head: &Head,
+    labels: &[Label],
+    measured: &[(usize, &str)],
+    remarks: &mut Remarks,
+) {
+    const FILTERED: [&str; 5] = ["filtered", "filt", "smoothed", "smooth", "gefiltert"];
+    const RAW: [&str; 3] = ["raw", "unfiltered", "roh"];
+    let says =
+        |column: usize, list: &[&str]| labels[column].words.iter().any(|word| list.contains(&word.as_str()));
+    let others = |column: usize| {
+        let is_other = |word: &&String| !FILTERED.contains(&word.as_str()) && !RAW.contains(&word.as_str());
+        labels[column].words.iter().filter(is_other).collect::<Vec<_>>()
+    };
+    let found =
+        measured.iter().filter(|(column, _)| says(*column, &FILTERED)).filter_map(|(column, joint)| {
+            let is_raw = |raw: &usize| {
+                says(*raw, &RAW)
+                    && others(*raw) == others(*column)
+                    && labels[*raw].unit == labels[*column].unit
+            };
+            let raw = (0..labels.len()).find(is_raw)?;
+            Some((*column, format!("{joint}={}", head.names[raw])))
+        });
+    let (columns, raw): (Vec<usize>, Vec<String>) = found.unzip();
+    let Some(first) = columns.first() else { return };
+    let message = format!(
+        "measured columns that are filtered, such as {:?}, although others are not: delays are those of the filter, too; import \
+         with --measured {}",
+        head.names[*first],
+        shell_word(&raw.join(","))
+    );
+    remarks.add(Code::Ambiguous, columns.len() as u64, message);
+}
+
 /// Where no joint has plan and measurement, words that all columns of a side share are of that side, not of a joint:
 /// `Boom S-0-0047 value`, `Boom S-0-0051 value 1`.
 pub(super) fn without_shared_words(drafts: &mut [Draft]) {

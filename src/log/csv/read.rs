@@ -13,7 +13,7 @@ use super::{
     number::number,
     row_order::{self, FEWEST},
     rows::{Rows, cell_text},
-    time::TimeSource,
+    time::{TimeSource, Wraps},
 };
 use crate::{
     math::median,
@@ -106,6 +106,9 @@ pub(super) fn read(
         let message = "last row, which breaks off in a number: the file was cut there; left out";
         remarks.add(Code::NotClosed, 1, message);
     }
+    let mut wraps = Wraps::default();
+    stamp_ns.iter_mut().for_each(|ns| *ns = wraps.undone(time, *ns));
+    wraps.remark(remarks);
     let of_day = time.is_of_day();
     let repeats =
         |row: usize| columns.values().all(|one| one.values[row].to_bits() == one.values[row - 1].to_bits());

@@ -27,7 +27,7 @@ const SHORTEST: usize = 3;
 
 /// Runs of letters and digits, and where they begin.
 fn tokens(text: &str) -> Vec<(usize, &str)> {
-    let separates = |c: char| !(c.is_alphanumeric() || c == '°');
+    let separates = |c: char| !(c.is_alphanumeric() || ['°', 'º'].contains(&c));
     let mut start = 0;
     let pieces = text.split_inclusive(separates).map(|piece| {
         start += piece.len();
@@ -56,7 +56,7 @@ fn scaled_at(text: &str, tokens: &[(usize, &str)], at: usize) -> Option<(usize, 
     let fits = |unit: &str| !["pi", "π"].contains(&name) || unit.starts_with("rad");
     let (end, unit) = found
         .filter(|(_, unit)| fits(unit))
-        .find_map(|(end, unit)| Some((end, scale_by(factor, &unit.replace('°', "deg"))?)))?;
+        .find_map(|(end, unit)| Some((end, scale_by(factor, &unit.replace(['°', 'º'], "deg"))?)))?;
     // Of `milli_deg_per_s` the unit is not all that is meant.
     let more = tokens.get(end + 1).is_some_and(|(_, next)| ["s", "sec", "per"].contains(next));
     Some((end, if more { ANOTHER } else { unit }))

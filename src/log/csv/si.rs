@@ -1,5 +1,7 @@
 //! Numbers of columns become SI, by the unit that each column states or is given.
 
+use std::{collections::BTreeSet, f64::consts::TAU};
+
 use super::{
     AngleUnit, CsvError, CsvOptions, Quantity,
     head::Head,
@@ -13,6 +15,7 @@ use crate::{
     remark::{Code, Remarks},
     series::JointKind,
     suggest::nearest,
+    text::shell_word,
 };
 
 /// The unit of a column and who says so.
@@ -63,7 +66,13 @@ pub(super) fn to_si(
     for Settled { column, unit, .. } in &settled {
         scale(cells, *column, unit.map_or(1.0, |unit| unit.factor));
     }
-    remark_guessed(&guessed, labels, head, fallback.map_or(RADIAN, |(unit, _)| unit), remarks);
+    let unit = fallback.map_or(RADIAN, |(unit, _)| unit);
+    remark_guessed(&guessed, labels, head, unit, remarks);
+    let may_slide = |column: &usize| {
+        unit == DEGREE && cells.columns.get(column).is_some_and(|column| column.reach() > TAU)
+    };
+    remark_lengths(guessed.iter().filter(|column| may_slide(column)), labels, remarks);
+    remark_grad(layout, labels, head, remarks);
     for one in &layout.interfaces {
         if one.name == VALVE {
             settled.push(share_of_travel(one.column, head, cells, remarks));
@@ -246,6 +255,44 @@ fn remark_guessed(columns: &[usize], labels: &[Label], head: &Head, unit: Unit, 
         );
         remarks.add(Code::Guessed, columns.len() as u64, message);
     }
+}
+
+/// Offers to take columns for lengths that reach farther than joints turn.
+fn remark_lengths<'a>(columns: impl Iterator<Item = &'a usize>, labels: &[Label], remarks: &mut Remarks) {
+    let joints: BTreeSet<&str> =
+        columns.filter_map(|column| labels.get(*column)).map(|label| label.joint.as_str()).collect();
+    let slides: Vec<String> = joints.iter().map(|joint| format!("{joint}=mm")).collect();
+    let message = format!(
+        "joints without a unit that reach farther than a turn: lengths? then import with --slides {}",
+        shell_word(&slides.join(","))
+    );
+    remarks.add(Code::Guessed, joints.len() as u64, message);
+}
+
+/// `grad` are degrees in German and other languages, and a hundredth of a right angle elsewhere.
+fn remark_grad(layout: &Layout, labels: &[Label], head: &Head, remarks: &mut Remarks) {
+    const ENGLISH: [&str; 9] = [
+        "target", "actual", "planned", "measured", "desired", "commanded", "setpoint", "reference",
+        "feedback",
+    ];
+    let is_doubtful = |column: &usize| {
+        let [name, below] =
+            [Some(&head.names), head.units.as_ref()].map(|row| row.and_then(|row| row.get(*column)));
+        let says = |text: Option<&String>| {
+            text.is_some_and(|text| text.split(|c: char| !c.is_alphabetic()).next_back() == Some("grad"))
+                || text.is_some_and(|text| text.ends_with("grad]") || text.ends_with("grad)"))
+        };
+        let is_english = |label: &Label| label.words.iter().any(|word| ENGLISH.contains(&word.as_str()));
+        (says(name) || says(below)) && labels.get(*column).is_some_and(is_english)
+    };
+    let found: Vec<usize> = layout.uses.iter().map(|one| one.column).filter(is_doubtful).collect();
+    let Some(first) = found.first() else { return };
+    let message = format!(
+        "columns in `grad` under English names, such as {:?}, taken as degrees, 360 to a turn; if they are gons, 400 to a turn, \
+         import with --planned JOINT=0.9*COLUMN,... --measured JOINT=0.9*COLUMN,... --degrees",
+        head.names[*first]
+    );
+    remarks.add(Code::Guessed, found.len() as u64, message);
 }
 
 /// That a header says no unit, or none that is known.

@@ -6,7 +6,10 @@ use super::{
     spread::spread,
     unit::{Measure, Unit},
 };
-use crate::units::{NS_PER_S, whole_ns};
+use crate::{
+    remark::{Code, Remarks},
+    units::{NS_PER_S, whole_ns},
+};
 
 /// The instant that times without a date count from, ns since 1970: 2025-10-09 08:53:20 UTC. No wall clock,
 /// so that equal files give equal logs and files with one zero of time fit together.
@@ -156,6 +159,60 @@ impl TimeSource {
     }
 }
 
+/// Where a counter of 16 or 32 bits begins again: the time goes on there.
+#[derive(Debug, Clone)]
+pub(super) struct Wraps {
+    before_ns: i64,
+    step_ns: i64,
+    added_ns: i64,
+    count: u64,
+}
+
+impl Default for Wraps {
+    fn default() -> Self {
+        Self { before_ns: i64::MIN, step_ns: 0, added_ns: 0, count: 0 }
+    }
+}
+
+impl Wraps {
+    /// After a wrap the time may go on by so many of the steps before: rows may be missing.
+    const STEPS: i64 = 3;
+
+    /// The time of a stamp, as if the counter had more bits.
+    pub(super) fn undone(&mut self, source: &TimeSource, ns: i64) -> i64 {
+        let TimeSource::Number { unit, .. } = source else { return ns };
+        let Some(unit_ns) = whole_ns(unit.factor).filter(|one| *one > 0 && unit.zero_ns() == 0) else {
+            return ns;
+        };
+        let before_ns = std::mem::replace(&mut self.before_ns, ns);
+        if ns > before_ns {
+            self.step_ns = ns.saturating_sub(before_ns);
+        } else if ns >= 0 && [ns, before_ns].iter().all(|ns| ns % unit_ns == 0) {
+            let spans = [16, 32].map(|bits| unit_ns.saturating_mul(1 << bits));
+            let goes_on = |span: &&i64| {
+                let on_ns = ns.saturating_add(**span).saturating_sub(before_ns);
+                before_ns < **span && (1..=Self::STEPS.saturating_mul(self.step_ns)).contains(&on_ns)
+            };
+            if let Some(span) = spans.iter().find(goes_on) {
+                self.added_ns = self.added_ns.saturating_add(*span);
+                self.count += 1;
+            }
+        }
+        ns.saturating_add(self.added_ns)
+    }
+
+    /// The same with nothing counted.
+    pub(super) fn going_on(&self) -> Self {
+        Self { count: 0, ..self.clone() }
+    }
+
+    /// Says what was undone.
+    pub(super) fn remark(&self, remarks: &mut Remarks) {
+        let message = "places where the counter of the clock has all of its bits full and begins again; the time goes on there";
+        remarks.add(Code::ClockJump, self.count, message);
+    }
+}
+
 /// The number of a cell, and the unit of time that some programs write behind each: `0.25 sec`.
 pub(super) fn with_unit(cell: &[u8]) -> (&[u8], Option<Unit>) {
     let found = number::with_unit(cell).filter(|(_, unit)| unit.measure == Measure::Time);
@@ -173,5 +230,22 @@ mod tests {
         let mut ns: Vec<i64> = cells.iter().filter_map(|cell| form.ns(cell)).collect();
         let absolute = TimeSource::Date { column: 0, form }.settle(&mut ns);
         assert_eq!((ns[1] - ns[0], absolute), (20_000_000, false));
+    }
+
+    #[test]
+    fn a_counter_that_begins_again_goes_on_and_a_clock_that_does_not() {
+        let steps = |unit: &str, bits: u32, from: i64| {
+            let unit = crate::log::csv::unit::parse_unit(unit).unwrap();
+            let source = TimeSource::Number { column: 0, unit };
+            let unit_ns = whole_ns(unit.factor).unwrap();
+            let mut wraps = Wraps::default();
+            let stamp = |k: i64| (from + 10 * k).rem_euclid(1 << bits) * unit_ns;
+            let ns: Vec<i64> = (0..100).map(|k| wraps.undone(&source, stamp(k))).collect();
+            (ns.windows(2).all(|two| two[1] - two[0] == 10 * unit_ns), wraps.count)
+        };
+        assert_eq!(steps("us", 32, (1 << 32) - 555), (true, 1));
+        assert_eq!(steps("ms", 16, (1 << 16) - 5), (true, 1));
+        assert_eq!(steps("ms", 20, (1 << 20) - 5), (false, 0));
+        assert_eq!(steps("s", 32, 0), (true, 0));
     }
 }

@@ -86,9 +86,15 @@ const OTHERS: [&str; 30] = [
 ];
 
 /// Spellings, in lower case and with `deg` for the degree sign.
-const UNITS: [(&[&str], Unit); 40] = [
+const UNITS: [(&[&str], Unit); 41] = [
     (&["rad", "radian", "radians", "弧度"], RADIAN),
-    (&["deg", "degree", "degrees", "grad", "grd", "grados", "gradi", "degrés", "度"], DEGREE),
+    (
+        &[
+            "deg", "degree", "degrees", "grad", "grd", "grados", "gradi", "degrés", "graden", "graus",
+            "grader", "derece", "град", "градусы", "度", "도",
+        ],
+        DEGREE,
+    ),
     (&["mrad"], unit("mrad", Measure::Angle, 1e-3)),
     (&["mdeg", "millideg"], unit("mdeg", Measure::Angle, 1e-3 * DEGREE_RAD)),
     (&["ddeg", "decideg", "zehntelgrad"], unit("0.1 deg", Measure::Angle, 0.1 * DEGREE_RAD)),
@@ -111,6 +117,7 @@ const UNITS: [(&[&str], Unit); 40] = [
     (&["dm"], unit("dm", Measure::Length, 0.1)),
     (&["um", "µm", "μm"], unit("um", Measure::Length, 1e-6)),
     (&["in", "inch", "inches"], unit("in", Measure::Length, 0.0254)),
+    (&["ft", "foot", "feet"], unit("ft", Measure::Length, 0.3048)),
     (&["mm/s", "mm_s", "mm/sec"], unit("mm/s", Measure::LinearSpeed, 1e-3)),
     (&["cm/s", "cm_s", "cm/sec"], unit("cm/s", Measure::LinearSpeed, 1e-2)),
     (&["m/s", "m_s", "mps", "m/sec"], unit("m/s", Measure::LinearSpeed, 1.0)),
@@ -157,7 +164,8 @@ impl Unit {
 
 /// The unit that a text names, if it is one.
 pub(super) fn parse_unit(text: &str) -> Option<Unit> {
-    let text = text.trim().trim_matches(['[', ']', '(', ')']).trim().to_lowercase().replace('°', "deg");
+    let text =
+        text.trim().trim_matches(['[', ']', '(', ')']).trim().to_lowercase().replace(['°', 'º'], "deg");
     let known = UNITS.iter().find(|(spellings, _)| spellings.contains(&text.as_str())).map(|(_, unit)| *unit);
     let other = || OTHERS.iter().find(|other| **other == text).map(|name| unit(name, Measure::Other, 1.0));
     // Values that are so many times the unit.
@@ -206,18 +214,20 @@ pub(super) fn scale_by(factor: f64, name: &str) -> Option<Unit> {
 
 /// The unit that ends a name, as in `q1_deg` or `J1_planned_rad_s`, and the name without it.
 pub(super) fn split_suffix(name: &str) -> Option<(&str, Unit)> {
-    const SUFFIXES: [&str; 66] = [
+    const SUFFIXES: [&str; 68] = [
         "arcsec", "arcmin", "millideg", "centideg", "decideg", "cdeg", "ddeg", "urad", "µrad", "μrad", "um",
         "µm", "μm", "0.1deg", "0.01deg", "0.001deg", "0.1mm", "0.01mm", "rad_s", "deg_s", "mrad_s", "mm_s",
         "cm_s", "m_s", "rad", "deg", "mrad", "mdeg", "mm", "cm", "m", "ms", "us", "ns", "s", "bar", "mbar",
-        "pa", "°", "min", "minutes", "h", "hours", "sec", "msec", "usec", "nsec", "nanosec", "gon", "pct",
-        "percent", "counts", "ticks", "rpm", "dps", "degps", "radps", "mps", "grad", "rev", "revs", "turns",
-        "degrees", "radians", "inch", "inches",
+        "pa", "°", "º", "min", "minutes", "h", "hours", "sec", "msec", "usec", "nsec", "nanosec", "gon",
+        "pct", "percent", "counts", "ticks", "rpm", "dps", "degps", "radps", "mps", "grad", "rev", "revs",
+        "turns", "degrees", "radians", "inch", "inches", "ft",
     ];
     let lower = name.to_lowercase();
     let suffix = SUFFIXES.iter().find(|suffix| {
         let stem = lower.strip_suffix(**suffix);
-        stem.is_some_and(|stem| **suffix == "°" || stem.ends_with(['_', ' ', '.']) && stem.len() > 1)
+        stem.is_some_and(|stem| {
+            ["°", "º"].contains(*suffix) || stem.ends_with(['_', ' ', '.']) && stem.len() > 1
+        })
     })?;
     // Lower case may be longer or shorter than the name in some scripts.
     let stem = name.get(..name.len().checked_sub(suffix.len())?)?;
@@ -230,7 +240,7 @@ mod tests {
 
     #[test]
     fn spellings_of_a_unit_are_one_unit() {
-        for text in ["deg", "[deg]", "(°)", " Degrees ", "[Grad]"] {
+        for text in ["deg", "[deg]", "(°)", " Degrees ", "[Grad]", "[º]", "graus", "град"] {
             assert_eq!(parse_unit(text), Some(DEGREE), "{text}");
         }
         assert_eq!(parse_unit("°/s").map(|unit| unit.name), Some("deg/s"));
@@ -255,6 +265,7 @@ mod tests {
             ("[7 mm]", "another unit"),
             ("[counts]", "counts"),
             ("1000 ms", "s"),
+            ("[ft]", "ft"),
         ] {
             assert_eq!(parse_unit(text).map(|unit| unit.name), Some(name), "{text}");
         }

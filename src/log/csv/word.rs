@@ -16,12 +16,12 @@ pub(super) enum Meaning {
     Name,
 }
 
-const PLANNED: &str = "expected ideal leader target targets tgt ziel vorgabe demanded requested planned plan desired des reference references ref rpos setp setpoint setpoints ipo set sp rsol soll sollwert goal nominal nom demand \
+const PLANNED: &str = "expected desiderata desiderato desiderate desiderati deseada deseado deseadas deseados théorique theorique ideal leader target targets tgt ziel vorgabe demanded requested planned plan desired des reference references ref rpos setp setpoint setpoints ipo set sp rsol soll sollwert goal nominal nom demand \
     wanted consigne req requests dmd tavoite mål målvärde børverdi trajectory traj fuehrung aspos consigna referencia riferimento alvo ohje ohjearvo börvärde zadana zadane zadany desejado desejada desejados cible hedef gewenst gewenste žádaná požadovaná \
     规划 规划值 计划 期望 期望值 目标 目标值 设定 设定值 给定 给定值 参考 参考值 目標 目標値 設定値 목표 목표값 \
     задание задано заданное заданный уставка план";
 const MEASURED: &str = "pfb fdb estimate observed follower actual act rückmeldung rueckmeldung fdbk estimated measured meas feedback fb fbk fpos process present observation ist istwert real sensor encoder enc pv measurement measurements reached rist \
-    mess messwert ms aipos mesure mesuré mesurée mesuree réel réelle reel reelle medido medida misurato misurata attuale mitattu oloarvo är ärvärde måleverdi \
+    mess messwert ms aipos mesure mesuré mesurée mesuree réel réelle reel reelle medido medida misurato misurata reale attuale mitattu oloarvo är ärvärde måleverdi \
     zmierzona zmierzone zmierzony rzeczywista rzeczywisty aktualna atual ölçülen gemeten skutečná měřená 实际 实际值 实测 实测值 测量 测量值 反馈 反馈值 当前 当前值 実際 実際値 実測 実測値 現在 現在値 현재 현재값 실제 실제값 측정 측정값 \
     факт фактический фактическое текущее измерено измеренное измеренный";
 const COMMAND: &str = "pcmd command commands commanded cmd action actions stell stellwert stellgrösse stellgröße kommando kommandiert befehl gesendet sent commande envoyé envoyée envoye envoyee comando comandado 指令 指令值 指令値 命令 명령";
@@ -33,7 +33,7 @@ const JOINT: &str = "j joint axis achse gelenk ax axes jnt joints eje asse junta
 const TIME: &str = "time timestamp timestamps zeit zeitstempel date datum uhrzeit datetime stamp elapsed temps clock ipoc tiempo tempo \
     aika tid czas zaman tijd čas 时间 时刻 時間 時刻 시간 время";
 const FOREIGN: &str = "qdd ddq ddot acc accel acceleration beschleunigung torque tau effort moment drehmoment current strom \
-    voltage spannung power leistung temperature temp temperatur pressure druck flow valve ventil spool \
+    voltage spannung power leistung temperature regelabweichung regeldifferenz temp temperatur pressure druck flow valve ventil spool \
     force kraft mode status error err fehler deviation abweichung lag schleppfehler tcp tool pose cart \
     cartesian euler rpy quat quaternion output input digital analog safety runtime counter seq sequence index scaling fraction robot x y z jerk \
     max min maximum minimum limit limits level gain gains clamp raw temperatures currents torques forces pressures modes voltages following schleppabstand erreur écart errore \
@@ -102,11 +102,15 @@ pub(super) fn words(header: &str) -> Vec<Word<'_>> {
         }
         slashed = piece.ends_with('/');
     }
-    // What a drive makes of its goal; a `profile_velocity` is a limit.
     for at in 1..words.len() {
-        let position = words[at].meaning == Meaning::Quantity(Quantity::Position);
-        if position && words[at - 1].text.eq_ignore_ascii_case("profile") {
+        let is_position = |word: &Word<'_>| word.meaning == Meaning::Quantity(Quantity::Position);
+        let is = |word: &Word<'_>, text: &str| word.text.eq_ignore_ascii_case(text);
+        let (before, word) = (&words[at - 1], &words[at]);
+        // What a drive makes of its goal, and what it controls to; a `profile_velocity` is a limit.
+        if is_position(word) && (is(before, "profile") || is(before, "control")) {
             words[at - 1].meaning = Meaning::Role(Role::Planned);
+        } else if is_position(before) && is(word, "diff") {
+            words[at].meaning = Meaning::Foreign;
         }
     }
     words
@@ -216,6 +220,9 @@ mod tests {
             ("as 1 gewenste hoek", "as 1 gemeten hoek"),
             ("osa 1 žádaná poloha", "osa 1 skutečná poloha"),
             ("bras consigne", "bras mesuré"),
+            ("Axe 1 position théorique", "Axe 1 position réelle"),
+            ("Asse 1 posizione desiderata", "Asse 1 posizione reale"),
+            ("Eje 1 posición deseada", "Eje 1 posición real"),
         ];
         for (planned, measured) in pairs {
             for (header, role) in [(planned, Role::Planned), (measured, Role::Measured)] {
@@ -231,6 +238,10 @@ mod tests {
         assert_eq!(words("offset")[0].meaning, Meaning::Name);
         assert_eq!(words("Exact")[0].meaning, Meaning::Name);
         assert_eq!(words("profile_velocity")[0].meaning, Meaning::Name);
-        assert_eq!(words("profile_position_deg")[0].meaning, Meaning::Role(Role::Planned));
+        for of_plan in ["profile_position_deg", "control_position_deg"] {
+            assert_eq!(words(of_plan)[0].meaning, Meaning::Role(Role::Planned));
+        }
+        assert_eq!(words("Axis1.PosDiff")[3].meaning, Meaning::Foreign);
+        assert_eq!(words("diff_left")[0].meaning, Meaning::Name);
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::{
     content::{Content, Extracted, TopicCount},
     frames,
-    topics::{fields_of, lacking, not_there},
+    topics::{fields_of, lacking, not_there, of_one_number},
 };
 use crate::{
     log::{
@@ -166,7 +166,11 @@ pub(super) fn named(
         present: match fields.as_slice() {
             [] => match lacking(extracted, topic) {
                 Some(lacks) => lacks.to_owned(),
-                None => unreadable.map_or("none".to_owned(), |why| format!("none that can be read: {why}")),
+                None => match (unreadable, of_one_number(&extracted.topics[topic])) {
+                    (Some(why), _) => format!("none that can be read: {why}"),
+                    (None, Some(how)) => format!("one number a message, named {how}"),
+                    (None, None) => "none".to_owned(),
+                },
             },
             fields => fields.join(", "),
         },

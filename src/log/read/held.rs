@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     math::median,
-    remark::{Code, Remarks},
+    remark::{Code, Remark, Remarks},
     series::{Series, Track},
 };
 
@@ -61,7 +61,11 @@ pub(super) fn of_command(Command { topic, series }: &mut Command, measured: &Ser
 
 fn of_both([planned, measured]: [&mut Series; 2], topics: &[Vec<&str>; 2], remarks: &mut Remarks) {
     let Some([_, until_s]) = measured.span_s() else { return };
-    if of_side(("plan", &topics[0]), planned, (until_s, false), remarks) {
+    let of_plan = of_side(("plan", &topics[0]), planned, (until_s, false), remarks);
+    // A sensor that fails leaves cells empty, too, but goes to and fro.
+    let is_empty = |topic: &&str| remarks.as_slice().iter().any(|remark| is_of_empty(remark, topic));
+    let steadily = || measured.tracks.iter().all(goes_steadily);
+    if of_plan || topics[1].iter().all(is_empty) && steadily() {
         // Plans are looked at where a measurement is.
         of_side(("measurement", &topics[1]), measured, (until_s, true), remarks);
     }
@@ -85,7 +89,8 @@ fn of_side(
     }
     if names.len() == series.tracks.len() {
         // What is held is no gap.
-        remarks.retain(|remark| !topics.iter().any(|topic| is_of_gaps(remark, topic)));
+        let is_of = |remark: &Remark, topic: &&str| is_of_gaps(remark, topic) || is_of_empty(remark, topic);
+        remarks.retain(|remark| !topics.iter().any(|topic| is_of(remark, topic)));
     }
     let message = format!(
         "silences of the {side} of {}, which hardly has a value twice in a row: it is written only where it changes, and \
@@ -164,8 +169,31 @@ fn is_written_on_change(track: &Track, all: &[Track]) -> bool {
     REPEATS * repeats <= track.len() && beside.iter().all(near)
 }
 
+/// Whether a remark tells of cells of a topic that are empty.
+fn is_of_empty(remark: &Remark, topic: &str) -> bool {
+    remark.code == Code::NotFinite && remark.message.contains(&format!(" {topic}:"))
+}
+
+/// Of so many steps one may turn back.
+const TURNS: usize = 5;
+
+/// Whether a joint hardly goes to and fro from value to value, as one at rest does by its noise.
+fn goes_steadily(track: &Track) -> bool {
+    let steps = track
+        .segments()
+        .iter()
+        .flat_map(|part| track.position()[part.clone()].windows(2).map(|two| two[1] - two[0]));
+    let steps: Vec<f64> = steps.collect();
+    let turns = steps.windows(2).filter(|two| two[0] * two[1] < 0.0).count();
+    TURNS * turns < steps.len()
+}
+
 /// Samples in a silence, at most.
 const MOST: f64 = 1e5;
+
+/// Silences of a measurement within a stretch are as long, in samples and s.
+const SHORT: f64 = 10.0;
+const SHORT_S: f64 = 0.25;
 
 /// The track with two samples more in each silence, or, `dense`, as many as elsewhere, and how many silences there are.
 fn held(track: &Track, until_s: f64, dense: bool) -> Option<(Track, u64)> {
@@ -187,8 +215,16 @@ fn held(track: &Track, until_s: f64, dense: bool) -> Option<(Track, u64)> {
     };
     let parts = track.segments();
     for (k, part) in parts.iter().enumerate() {
-        t_s.extend_from_slice(&track.t_s()[part.clone()]);
-        position.extend_from_slice(&track.position()[part.clone()]);
+        for k in part.clone() {
+            let (at_s, before) = (track.t_s()[k], k.checked_sub(1).filter(|before| *before >= part.start));
+            // A plan that creeps is no stairs; a joint that rests briefly is.
+            let short_s = (SHORT * step_s).max(SHORT_S);
+            if let Some(before) = before.filter(|before| dense && at_s - track.t_s()[*before] > short_s) {
+                hold(track.t_s()[before], at_s, track.position()[before], &mut t_s, &mut position);
+            }
+            t_s.push(at_s);
+            position.push(track.position()[k]);
+        }
         let last = part.end.checked_sub(1)?;
         let to_s = parts.get(k + 1).map_or(until_s + step_s, |next| track.t_s()[next.start]);
         hold(track.t_s()[last], to_s, track.position()[last], &mut t_s, &mut position);
@@ -249,6 +285,41 @@ mod tests {
         of_both([&mut plan, &mut measured], &[vec!["/plan"], vec!["/joints"]], &mut Remarks::default());
         assert!(measured.tracks[0].t_s().windows(2).all(|two| two[1] - two[0] < 0.035));
         assert!(plan.tracks[0].len() < 400);
+    }
+
+    #[test]
+    fn a_measurement_that_leaves_cells_empty_beside_a_plan_of_every_row_is_held() {
+        let changes = |k: usize, q: &[f64]| k == 0 || (q[k] - q[k - 1]).abs() > 0.0;
+        let cells = |count: u64| {
+            let mut remarks = Remarks::default();
+            remarks.add(
+                Code::NotFinite,
+                count,
+                "values of /joints:position that are NaN or infinite, dropped",
+            );
+            remarks
+        };
+        let noisy = |k: usize, q: &[f64]| changes(k, q) || !(430..500).contains(&k);
+        for (kept, mut remarks, holds) in [
+            (&changes as &dyn Fn(usize, &[f64]) -> bool, cells(500), true),
+            (&changes, cells(0), false),
+            (&noisy, cells(70), false),
+        ] {
+            let (mut plan, mut measured) = (series(|_, _| true), series(kept));
+            if !holds {
+                let noise = |(k, q): (usize, &f64)| q + if k.is_multiple_of(2) { 1e-3 } else { -1e-3 };
+                let track = &measured.tracks[0];
+                let cuts: Vec<usize> = track.segments().iter().skip(1).map(|part| part.start).collect();
+                let q = track.position().iter().enumerate().map(noise).collect();
+                measured.tracks[0] = Track::new("J", track.t_s().to_vec(), q, &cuts).unwrap();
+            }
+            of_both([&mut plan, &mut measured], &[vec!["/plan"], vec!["/joints"]], &mut remarks);
+            assert_eq!(measured.tracks[0].segments().len() == 1, holds);
+            assert_eq!(
+                remarks.as_slice().iter().all(|remark| remark.code == Code::Guessed),
+                holds || remarks.is_empty()
+            );
+        }
     }
 
     #[test]

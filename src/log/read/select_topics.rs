@@ -94,6 +94,24 @@ fn names_of(all: &[Candidate]) -> Vec<&str> {
     names
 }
 
+/// Whether the joints of both sides are counted, those of one from one more than those of the other: by their names each would be paired
+/// with its neighbour.
+fn numbered_apart(planned: &[&str], measured: &[&str]) -> bool {
+    let counted = |names: &[&str]| {
+        let part = |name: &&str| {
+            let prefix = name.trim_end_matches(|c: char| c.is_ascii_digit());
+            Some((prefix.to_owned(), name[prefix.len()..].parse::<u32>().ok()?))
+        };
+        let mut parts = names.iter().map(part).collect::<Option<Vec<_>>>()?;
+        parts.sort_unstable();
+        let follows =
+            |two: &[(String, u32)]| two[0].0 == two[1].0 && two[1].1.checked_sub(1) == Some(two[0].1);
+        (parts.len() > 1 && parts.windows(2).all(follows)).then_some(parts)
+    };
+    let Some((plan, came)) = counted(planned).zip(counted(measured)) else { return false };
+    plan.len() == came.len() && plan[0].0 == came[0].0 && plan[0].1.abs_diff(came[0].1) == 1
+}
+
 const PLANNED: &str = "planned";
 pub(super) const MEASURED: &str = "measured";
 
@@ -117,15 +135,22 @@ fn choose_both(extracted: &Extracted, options: &ReadOptions) -> Result<Choice, L
     let first = alike.rev().max_by_key(|c| near(c)).or(best);
     let Some(first) = first else {
         let [planned, measured] = [names_of(&planned), names_of(&measured)];
-        let counted = |names: &[&str]| names.iter().zip(1..).all(|(name, k)| *name == format!("joint_{k}"));
-        let given = match planned.len() == measured.len() {
-            true if counted(&planned) => measured.join(","),
-            true if counted(&measured) => planned.join(","),
+        // Which number is which of several joints nobody says.
+        let given = match [&planned[..], &measured[..]] {
+            [["joint_1"], [name]] | [[name], ["joint_1"]] => (*name).to_owned(),
             _ => "JOINT,JOINT,...".to_owned(),
         };
         let [planned, measured] = [planned, measured].map(|names| names.join(", "));
         return Err(LogError::NoCommonJoint { planned, measured, given });
     };
+    let is_told = !options.joints.is_empty() || !options.planned.is_empty() && !options.measured.is_empty();
+    let [plan, came] = [names_of(std::slice::from_ref(first)), names_of(&measured)];
+    if !is_told && numbered_apart(&plan, &came) {
+        let [planned, measured] = [plan, came].map(|names| names.join(", "));
+        let common = measured.split(", ").filter(|name| planned.split(", ").any(|plan| plan == *name));
+        let common = common.collect::<Vec<_>>().join(",");
+        return Err(LogError::NumberedApart { planned, measured, common });
+    }
     // Several controllers each plan joints of their own: all of one kind are used, and others of joints that are measured.
     let explicit = !options.planned.is_empty();
     let serves = |c: &&Candidate| explicit || c.rank == first.rank || c.rank < COMMAND && common(c);

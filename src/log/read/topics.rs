@@ -3,7 +3,7 @@
 use std::{collections::BTreeSet, path::Path};
 
 use super::{
-    content::{Content, Extracted, Source},
+    content::{Content, Extracted, Source, TopicCount},
     origin::Imported,
     recording::TopicInfo,
 };
@@ -63,6 +63,19 @@ pub(super) fn lacking(extracted: &Extracted, topic: usize) -> Option<&'static st
     });
     let first = found.next()?;
     first.filter(|_| found.all(|lacks| lacks.is_some()))
+}
+
+/// How a topic of one number a message is named, as a controller of each joint has it.
+pub(super) fn of_one_number(topic: &TopicCount) -> Option<String> {
+    const NUMBERS: [&str; 2] = ["Float64", "Float32"];
+    let kind = topic.type_name.strip_prefix("std_msgs/")?;
+    let kind = kind.strip_prefix("msg/").unwrap_or(kind);
+    NUMBERS.contains(&kind).then(|| {
+        format!(
+            "as {0}:data, one of each joint for each side, and --joints JOINT,... in that order",
+            topic.topic
+        )
+    })
 }
 
 /// Fields of a topic that hold numbers by joint.
@@ -175,7 +188,9 @@ pub(super) fn missing(
         None if flag.contains(' ') => (present(extracted), format!("{flag} TOPIC[:FIELD]")),
         None => {
             let own = format!("; or, if they are in a log of their own, {}", in_another(&extracted.path));
-            (present(extracted), format!("{flag} TOPIC[:FIELD]{own}"))
+            let number = extracted.topics.iter().find_map(|topic| of_one_number(topic));
+            let topic = number.map_or_else(|| "TOPIC[:FIELD]".to_owned(), |how| format!("TOPIC:data, {how}"));
+            (present(extracted), format!("{flag} {topic}{own}"))
         }
     };
     LogError::Missing { missing, present, fix }

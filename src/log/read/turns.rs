@@ -3,7 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::{
-    math::median,
+    arm::{names_a_cylinder, names_a_slide},
+    math::{median, range},
     remark::{Code, Remarks},
     series::{JointKind, Series, Track},
     text::shell_word,
@@ -15,6 +16,18 @@ const INSTANTS: usize = 1000;
 /// Samples that are farther apart do not tell a full turn from a motion, s.
 const LONGEST_S: f64 = 0.25;
 
+/// An angle that steps by full turns spans about one; what spans more than so many is a length, or counts.
+const MOST_TURNS: f64 = 3.0;
+
+/// Whether a joint's angle steps by full turns, as far as its name and span say that it may.
+fn steps(track: &Track) -> bool {
+    let [lowest, highest] = range(track.position().iter().copied());
+    let may = highest - lowest < MOST_TURNS * TAU
+        && !names_a_cylinder(track.name())
+        && !names_a_slide(track.name());
+    track.turns() && may && track.sample_interval_s() < LONGEST_S && turns(track) > 0
+}
+
 /// Undoes full turns of joints declared continuous, and of those that step by one in plan and measurement alike, which no joint does
 /// that has end stops; within plan and measurement and between them. Returns all of these.
 pub(super) fn unwrap_sides(
@@ -23,7 +36,6 @@ pub(super) fn unwrap_sides(
     remarks: &mut Remarks,
 ) -> Vec<String> {
     let [(_, planned), (_, measured)] = sides;
-    let steps = |track: &Track| track.turns() && track.sample_interval_s() < LONGEST_S && turns(track) > 0;
     let alike =
         planned.tracks.iter().filter(|plan| steps(plan) && measured.track(plan.name()).is_some_and(steps));
     let alike = alike.map(|plan| plan.name().to_owned()).filter(|name| !continuous.contains(name));
@@ -167,5 +179,19 @@ mod tests {
         let both = planned.tracks[0].position().iter().zip(measured.tracks[0].position()).skip(20);
         assert!(both.clone().all(|(plan, came)| (plan - came - 0.3).abs() < 1e-9));
         assert!(matches!(remarks.as_slice(), [one] if one.code == Code::Wrapped), "{remarks:?}");
+    }
+
+    #[test]
+    fn a_length_that_steps_by_as_much_is_no_endless_joint() {
+        let moves = |t: f64| 300.0 * (t * 0.5).sin() + if t > 2.0 { TAU } else { 0.0 };
+        for (name, course) in
+            [("boom", &moves as &dyn Fn(f64) -> f64), ("boom_cylinder", &|t| (3.0 * t).rem_euclid(TAU))]
+        {
+            let of = || Series::sampled(name, 500, course);
+            let (mut planned, mut measured, mut remarks) = (of(), of(), Remarks::default());
+            let sides = &mut [("planned", &mut planned), ("measured", &mut measured)];
+            assert!(unwrap_sides(sides, &[], &mut remarks).is_empty(), "{name}");
+            assert_eq!(planned, of());
+        }
     }
 }

@@ -7,7 +7,7 @@ use super::{
     parts::{part_name, part_pattern},
 };
 use crate::{
-    log::JsonLines,
+    log::{CsvError, JsonLines},
     remark::{Code, Remarks},
 };
 
@@ -27,14 +27,30 @@ pub(super) struct LeftOut {
     /// Of a header whose columns cannot be told, and why those of the first such cannot.
     pub(super) below: u64,
     pub(super) why: Option<String>,
+    /// Of numbers before the first header, and what was wrong with them.
+    pub(super) headless: u64,
+    pub(super) no_header: Option<CsvError>,
+    /// Parts that began where a joint's keys came.
+    pub(super) later: u64,
 }
 
 impl Recording<'_> {
     /// Doubts about all that came.
     pub(super) fn remarks(&self) -> Remarks {
         let mut remarks = Remarks::default();
-        self.closed.iter().for_each(|stream| remarks.extend(stream.remarks()));
-        let LeftOut { unread, words, asides, too_long, untold, below, why } = &self.left_out;
+        for (number, stream) in (1..).zip(&self.closed) {
+            let mut of_stream = stream.remarks();
+            // The other side came later.
+            of_stream.retain(|remark| number == self.closed.len() || remark.code != Code::OneSide);
+            remarks.extend(of_stream);
+        }
+        let LeftOut { unread, words, asides, too_long, untold, below, why, headless, later, .. } =
+            &self.left_out;
+        let message =
+            "keys of a joint that came after the columns were settled: what follows is in a part of its own";
+        remarks.add(Code::NotSupported, *later, message);
+        let message = "lines of numbers before the first header, whose columns cannot be told; left out";
+        remarks.add(Code::UndecodableMessage, *headless, message);
         remarks.add(Code::UndecodableMessage, *asides, "lines of words among the rows; left out");
         let message = "lines of words before the first with numbers; left out";
         remarks.add(Code::UndecodableMessage, *words, message);

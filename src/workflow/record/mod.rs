@@ -2,10 +2,14 @@
 
 mod document;
 mod doubts;
+mod host;
+mod later;
 mod output;
+mod packets;
 mod parts;
 mod senders;
 mod settle;
+mod told;
 mod unsaved;
 
 use std::{
@@ -27,12 +31,11 @@ use crate::{
     log::{CsvError, CsvOptions, JsonLines, LogWriter, TableStream, WriteError},
 };
 use doubts::LeftOut;
+use later::Later;
 use output::Synced;
 use parts::part_name;
+use told::FIRST_LINES;
 use unsaved::Unsaved;
-
-/// Lines after which the columns are settled.
-const FIRST_LINES: usize = 10;
 
 /// What some programs begin a text in UTF-8 with.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -130,6 +133,7 @@ pub fn run(
 struct Recording<'a> {
     inputs: &'a Inputs,
     objects: Option<JsonLines>,
+    later: Option<Later>,
     /// Lines until the columns are settled.
     first: Vec<u8>,
     first_lines: usize,
@@ -157,6 +161,7 @@ impl<'a> Recording<'a> {
         Self {
             inputs,
             objects: None,
+            later: None,
             first: Vec::new(),
             first_lines: 0,
             open: None,
@@ -221,14 +226,14 @@ impl<'a> Recording<'a> {
         if self.objects.is_none() && !settled && JsonLines::is_object(line) && is_words(&self.first) {
             self.left_out.words += std::mem::take(&mut self.first_lines) as u64;
             self.first.clear();
-            let options = &self.inputs.options;
-            let named = options.columns.values().flatten().map(|(_, column)| column.clone());
-            let named = named.filter(|column| is_key(column));
-            self.objects = Some(JsonLines::expecting(named, options.time.clone()));
+            self.objects = Some(told::objects(&self.inputs.options));
         }
         if self.objects.is_some() && !settled && self.first_lines == 0 && !JsonLines::has_number(line) {
             self.left_out.words += 1;
             return Ok(());
+        }
+        if self.keeps_back(line) {
+            return self.keep_back(line);
         }
         let text = match &mut self.objects {
             Some(objects) if self.open.is_none() => {
@@ -263,6 +268,7 @@ impl<'a> Recording<'a> {
     /// A moment without a line: what is kept back for the next one is written.
     fn pause(&mut self) -> Result<(), RecordError> {
         self.settle(false)?;
+        self.settle_later(false)?;
         let rest = self.objects.as_mut().filter(|_| self.open.is_some()).map(JsonLines::rest);
         self.write(&rest.unwrap_or_default().into_bytes(), false)
     }
@@ -342,7 +348,7 @@ impl<'a> Recording<'a> {
         while self.open.is_none() && !self.lost && (self.closed.is_empty() || self.first_lines > 1) {
             self.settle(true)?;
         }
-        self.pause().map_err(|error| self.stopped(error))?;
+        self.settle_later(true).and_then(|()| self.pause()).map_err(|error| self.stopped(error))?;
         if let Some((stream, log)) = self.open.take() {
             log.finish().map_err(|error| self.stopped(error.into()))?;
             self.closed.push(stream);
@@ -361,9 +367,4 @@ impl<'a> Recording<'a> {
 fn is_words(lines: &[u8]) -> bool {
     let text = String::from_utf8_lossy(lines);
     text.split([',', ';', '\t', ' ', '\n']).all(|cell| cell.trim().parse::<f64>().is_err())
-}
-
-/// Whether a column as a caller names it is a key, and no number of a column or sum of several.
-fn is_key(column: &str) -> bool {
-    !column.starts_with('#') && column.chars().all(|c| c.is_alphanumeric() || "_. ".contains(c))
 }

@@ -15,6 +15,9 @@ const MOST_LINES: usize = 200;
 /// So many objects are waited for while none has a key of the other side.
 const ONE_SIDED: usize = 300;
 
+/// So many rows are waited for a header that comes again and again.
+const MOST_HEADLESS: u64 = 10_000;
+
 impl Recording<'_> {
     /// Tells the columns by the lines so far, at the latest at the end; until then more of them may help.
     pub(super) fn settle(&mut self, last: bool) -> Result<(), RecordError> {
@@ -71,6 +74,11 @@ impl Recording<'_> {
                 Ok(())
             }
             Err(error @ (CsvError::NoUnit { .. } | CsvError::NotByRows { .. })) => Err(error.into()),
+            Err(error)
+                if self.objects.is_none() && !self.first.split(|byte| *byte == b'\n').any(is_header) =>
+            {
+                self.await_header(error, last)
+            }
             Err(error) => match read_csv_bytes(WHAT_CAME, &self.first, &self.inputs.options) {
                 Ok(_) => Err(RecordError::ImportReads(error)),
                 Err(_) => Err(error.into()),
@@ -86,9 +94,28 @@ impl Recording<'_> {
             return true;
         }
         self.lost = false;
+        if self.closed.is_empty() && is_header(line) && is_numbers(&self.first) {
+            self.leave_out_headless();
+        }
         let aside = is_aside(&self.first, line);
         self.left_out.asides += u64::from(aside);
         aside
+    }
+
+    /// Rows alone came: who sends may repeat the header. What is wrong without one is said where none comes.
+    fn await_header(&mut self, error: CsvError, last: bool) -> Result<(), RecordError> {
+        self.leave_out_headless();
+        let error = self.left_out.no_header.take().unwrap_or(error);
+        if last || self.left_out.headless >= MOST_HEADLESS {
+            return Err(error.into());
+        }
+        self.left_out.no_header = Some(error);
+        Ok(())
+    }
+
+    fn leave_out_headless(&mut self) {
+        self.left_out.headless += std::mem::take(&mut self.first_lines) as u64;
+        self.first.clear();
     }
 
     /// Another header came before the columns of the first one were settled: each has the rows below it.
@@ -108,4 +135,12 @@ impl Recording<'_> {
             .filter(|line| !line.is_empty())
             .try_for_each(|line| self.take(line))
     }
+}
+
+/// Whether all cells of all lines are numbers.
+fn is_numbers(lines: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(lines);
+    text.split([',', ';', '\t', ' ', '\n'])
+        .map(str::trim)
+        .all(|cell| cell.is_empty() || cell.parse::<f64>().is_ok())
 }

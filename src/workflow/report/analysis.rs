@@ -25,7 +25,9 @@ pub struct Analysis {
 pub fn analyse<'a>(recording: &'a Recording, rules: &Rules, remarks: &mut Remarks) -> Analysis {
     let both = |planned: &'a Track| Some((planned, recording.measured.track(planned.name())?));
     let (alignment, pairs) = aligned(recording.planned.tracks.iter().filter_map(both), rules, remarks);
-    Analysis::of(alignment, pairs, rules)
+    let found = Analysis::of(alignment, pairs, rules);
+    remark_edges(&found.replay, remarks);
+    found
 }
 
 /// Planned and measured tracks by joint, moved out of a recording.
@@ -80,6 +82,17 @@ impl Analysis {
         }
         ::log::info!("{} joints aligned, {} transitions found", pairs.len(), replay.transitions.len());
         Self { alignment, pairs, replay }
+    }
+}
+
+/// Remarks starts that may lie where a gap ends.
+pub(super) fn remark_edges(replay: &Replay, remarks: &mut Remarks) {
+    for joint in &replay.joints {
+        let message = format!(
+            "starts of {} at the edge of a gap are not judged: its plan moves where the gap ends",
+            joint.name
+        );
+        remarks.add(Code::Unmatched, joint.edge_starts as u64, message);
     }
 }
 

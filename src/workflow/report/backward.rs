@@ -2,6 +2,7 @@
 
 use super::outcome::Report;
 use crate::{
+    remark::{Code, Remark},
     replay::{JointReplay, Kind, Transition},
     series::JointKind,
 };
@@ -26,9 +27,12 @@ pub struct Backward {
 }
 
 impl Report {
-    /// The joints that do so; none of a run that followed its plan at another time, whose joints are in other motions.
+    /// The joints that do so; none of a run that followed its plan at another time, whose joints are in other motions, or whose
+    /// joints may have the plans of others.
     pub fn backward(&self) -> Vec<Backward> {
-        if !self.is_in_time() {
+        let exchanged =
+            |remark: &Remark| remark.code == Code::UnlikePlan && remark.message.contains("exchanged");
+        if !self.is_in_time() || self.remarks.as_slice().iter().any(exchanged) {
             return Vec::new();
         }
         let of = |joint: &JointReplay| {

@@ -19,7 +19,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 
 pub use super::correctable::Uncorrectable;
 pub use analysis::{Analysis, analyse};
-use analysis::{aligned, taken};
+use analysis::{aligned, remark_edges, taken};
 pub use backward::Backward;
 pub use document::Document;
 pub use failure::ReportFailure;
@@ -129,6 +129,9 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         return Err(LogError::NoOverlap { planned_s, measured_s, no_other_clock }.into());
     }
     let Analysis { alignment, pairs, replay } = Analysis::of(alignment, pairs, &inputs.rules);
+    if inputs.stretches_s.is_empty() {
+        remark_edges(&replay, &mut remarks);
+    }
     // A command that was made ahead of its plan may have joints lead it.
     if carried.promise().is_none() && inputs.read.measured_delay_ns.is_none() {
         remark_leads(&pairs, &replay, &mut remarks);

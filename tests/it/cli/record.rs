@@ -79,9 +79,22 @@ fn a_sensor_that_sends_later_than_the_plan_is_recorded() {
     let (code, out, error) = recorded(folder.path(), &lines(60), &[]);
     assert!(code == 0 && out.contains("boom_act_deg: measured position"), "{out}{error}");
     assert_eq!(report(folder.path(), "run.mcap")["joints"][0]["starts"], 1);
-    // Later than is waited for: told, or taken if it is named.
+    // Later than is waited for: in a part of its own, or in the same if it is named.
     let (code, out, _) = recorded(folder.path(), &lines(400), &["--force"]);
-    assert!(code == 3 && out.contains("keys that came after the columns were settled"), "{out}");
+    assert!(
+        code == 3 && out.contains("run.mcap, run-2.mcap") && out.contains("keys of a joint that came"),
+        "{out}"
+    );
+    assert!(out.starts_with("500 rows of 500 lines") && !out.contains("one-side"), "{out}");
+    let late = report(folder.path(), "run-2.mcap");
+    assert_eq!(late["alignment"][0]["matched"], 100, "{late}");
+    // A key that is of no joint goes on without it.
+    let events = lines(0).replace("\"t_s\": 8", "\"count\": 7, \"t_s\": 8");
+    let (_, out, _) = recorded(folder.path(), &events, &["--force"]);
+    assert!(
+        out.starts_with("500 rows of 500 lines written to run.mcap:") && out.contains("keys that came"),
+        "{out}"
+    );
     let named = ["--force", "--planned", "boom=boom_set_deg", "--measured", "boom=boom_act_deg"];
     let (_, out, _) = recorded(folder.path(), &lines(400), &named);
     assert!(out.contains("boom_act_deg: measured position") && !out.contains("keys that came"), "{out}");

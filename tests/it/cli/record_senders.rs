@@ -84,6 +84,61 @@ fn a_second_sender_is_told_and_not_mixed_in() {
 }
 
 #[test]
+fn packets_of_nobody_and_packets_that_end_within_a_row_lose_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let recorder = start(folder.path(), &["--udp", &free.to_string(), "--seconds", "6"]);
+    sleep(Duration::from_secs(2));
+    let [one, other] = ["127.0.0.1:0", "127.0.0.2:0"].map(|from| UdpSocket::bind(from).unwrap());
+    let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
+    for noise in [&b""[..], b"hello\n", b"{\"temp\": 20}"] {
+        // A host may send from one address alone.
+        let _ = other.send_to(noise, free);
+    }
+    for packet in text.as_bytes().chunks(150) {
+        one.send_to(packet, free).unwrap();
+        sleep(Duration::from_micros(300));
+    }
+    let (_, out, error) = said(&recorder.wait_with_output().unwrap());
+    fs::write(folder.path().join("a.csv"), &text).unwrap();
+    assert!(out.starts_with("500 rows of 501 lines"), "{out}{error}");
+    assert_eq!(report(folder.path(), "run.mcap")["joints"], report(folder.path(), "a.csv")["joints"]);
+}
+
+#[test]
+fn a_port_for_each_packet_loses_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let recorder = start(folder.path(), &["--udp", &free.to_string(), "--seconds", "6"]);
+    sleep(Duration::from_secs(2));
+    let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
+    for line in text.lines() {
+        let one = UdpSocket::bind("127.0.0.1:0").unwrap();
+        one.send_to(line.as_bytes(), free).unwrap();
+        sleep(Duration::from_micros(300));
+    }
+    let (_, out, error) = said(&recorder.wait_with_output().unwrap());
+    assert!(out.starts_with("500 rows of 501 lines"), "{out}{error}");
+}
+
+#[test]
+fn a_header_that_comes_later_is_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
+    let (head, rows) = text.split_once('\n').unwrap();
+    let lines: Vec<&str> = rows.lines().collect();
+    let later = format!("{}\n{head}\n{}\n", lines[..60].join("\n"), lines[60..].join("\n"));
+    // From the middle of a row on, too.
+    for (cut, left_out) in [(0, 60), (3, 60)] {
+        let (code, out, error) = recorded(folder.path(), &later[cut..], &["--force"]);
+        assert!(code == 3 && out.starts_with("440 rows of 501 lines"), "{cut}: {code} {out}{error}");
+        assert!(out.contains(&format!("x{left_out}")) && out.contains("before the first header"), "{out}");
+    }
+    let (code, _, error) = recorded(folder.path(), rows, &["--force"]);
+    assert!(code == 1 && error.contains("--time"), "{code}: {error}");
+}
+
+#[test]
 fn a_plan_that_is_none_is_refused_before_anything_is_recorded() {
     let folder = tempfile::tempdir().unwrap();
     let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);

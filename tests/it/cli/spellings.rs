@@ -187,3 +187,88 @@ fn letters_of_an_orientation_beside_the_place_of_a_tool_are_no_joints() {
     let alone = two_joints("t,A_set_deg,B_set_deg,A_act_deg,B_act_deg");
     assert_run(alone.as_bytes(), "", &["A", "B"]);
 }
+
+#[test]
+fn words_and_units_of_other_languages_are_known() {
+    let degrees = 180.0 / std::f64::consts::PI;
+    for unit in ["º", "graden", "graus", "derece", "град"] {
+        let said = assert_run(
+            trace(&format!("t,J1 target [{unit}],J1 actual [{unit}]"), 1.0, ",", degrees).as_bytes(),
+            "",
+            &["J1"],
+        );
+        assert!(!said.contains("guessed"), "{said}");
+    }
+    for (header, name) in [
+        ("t,Asse 1 posizione desiderata [deg],Asse 1 posizione reale [deg]", "Asse_1"),
+        ("t,Axe 1 position théorique [deg],Axe 1 position réelle [deg]", "Axe_1"),
+        ("t,boom_control_position_deg,boom_actual_position_deg", "boom"),
+    ] {
+        assert_run(trace(header, 1.0, ",", degrees).as_bytes(), "", &[name]);
+    }
+    assert_run(trace("t,boom_set [ft],boom_act [ft]", 1.0, ",", 1.0 / 0.3048).as_bytes(), "", &["boom"]);
+    // Degrees of German, and, under English names, perhaps gons.
+    for (header, doubt) in
+        [("t,J1 target [grad],J1 actual [grad]", true), ("t,J1 Soll [Grad],J1 Ist [Grad]", false)]
+    {
+        let said = assert_run(trace(header, 1.0, ",", degrees).as_bytes(), "", &["J1"]);
+        assert_eq!(said.contains("gons"), doubt, "{said}");
+    }
+}
+
+#[test]
+fn an_error_by_any_word_makes_the_plan() {
+    for (came, error) in
+        [("ActPos", "PosDiff"), ("Istwert", "Regelabweichung"), ("actual", "lag"), ("actual", "track_err")]
+    {
+        let text = timed(&format!("t,Axis1.{came} [deg],Axis1.{error} [deg]"), (500, 0.02), |t_s| {
+            let [plan, came] = moves(t_s).map(f64::to_degrees);
+            format!("{t_s:.2},{came},{}", plan - came)
+        });
+        assert_run(text.as_bytes(), "--planned Axis1=measured+error", &["Axis1"]);
+    }
+}
+
+#[test]
+fn speeds_filters_and_lengths_without_a_unit_are_told() {
+    let text = timed("t,J1 v_soll,J1 s_soll,J1 v_ist,J1 s_ist", (500, 0.02), |t_s| {
+        let [now, next] = [t_s, t_s + 0.02].map(|t_s| moves(t_s).map(f64::to_degrees));
+        let speed = |side: usize| (next[side] - now[side]) / 0.02;
+        format!("{t_s:.2},{},{},{},{}", speed(0), now[0], speed(1), now[1])
+    });
+    let said = assert_run(text.as_bytes(), "--degrees", &["J1_s"]);
+    assert!(said.contains("taken for speeds of J1_s"), "{said}");
+    let header =
+        "t,J1_set_deg,J2_set_deg,J1_act_filtered_deg,J2_act_filtered_deg,J1_act_raw_deg,J2_act_raw_deg";
+    let text = timed(header, (500, 0.02), |t_s| {
+        let [plan, came] = moves(t_s).map(f64::to_degrees);
+        let filtered = moves(t_s - 0.1)[1].to_degrees();
+        format!("{t_s:.2},{plan},{},{filtered},{},{came},{}", -plan, -filtered, -came)
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let (_, said) = peaks(folder.path(), text.as_bytes(), "");
+    let (_, line) = said.split_once("import with ").unwrap_or_else(|| panic!("{said}"));
+    let said = assert_run(text.as_bytes(), line.lines().next().unwrap_or_default(), &["J1", "J2"]);
+    assert!(!said.contains("are filtered"), "{said}");
+    let text = timed("t,swing_set_deg,swing_act_deg,boom_set,boom_act", (500, 0.02), |t_s| {
+        let [plan, came] = moves(t_s);
+        format!("{t_s:.2},{plan},{came},{},{}", 1000.0 + plan, 1000.0 + came)
+    });
+    let (_, said) = peaks(folder.path(), text.as_bytes(), "");
+    assert!(said.contains("--slides boom=mm"), "{said}");
+}
+
+#[test]
+fn a_counter_that_begins_again_is_one_run() {
+    for (header, per_second, full) in
+        [("micros,boom_set_rad,boom_act_rad", 1e6, 32), ("t_ms,boom_set_rad,boom_act_rad", 1e3, 16)]
+    {
+        let full = f64::from(2_u32.pow(16)).powi(full / 16);
+        let text = timed(header, (500, 0.02), |t_s| {
+            let [plan, came] = moves(t_s);
+            format!("{:.0},{plan},{came}", (full + (t_s - 3.0) * per_second).rem_euclid(full))
+        });
+        let said = assert_run(text.as_bytes(), "", &["boom"]);
+        assert!(said.contains("begins again; the time goes on there"), "{said}");
+    }
+}

@@ -34,6 +34,13 @@ fn a_table_without_names_is_told_the_line_that_names_columns_by_number() {
     assert!(code != 1 && text.contains("one joint, 4.98 s at 50.0 Hz"), "{line} {text}{error}");
     let (line, error) = paste(&rows(|_, p, m| format!("{p:.4},{m:.4}\n")));
     assert!(line.contains("--rate HZ --planned 'J1=#1' --measured 'J1=#2'"), "{error}");
+    let mut count = 0;
+    let (line, error) =
+        paste(&rows(|_, p, m| format!("{p:.4},{m:.4}\n")).lines().fold(String::new(), |all, row| {
+            count += 1;
+            format!("{all}{count},{row}\n")
+        }));
+    assert!(line.contains("--rate HZ --planned 'J1=#2' --measured 'J1=#3'"), "{error}");
     // Two joints, their measurement behind their plans; and where no two columns are alike, none is proposed.
     let two = |t: f64, p: f64, m: f64| {
         format!("{t:.2},{p:.4},{:.4},{m:.4},{:.4}\n", (3.0 * t).sin(), (3.0 * t - 0.2).sin())

@@ -76,6 +76,34 @@ fn errors_name_what_was_found_expected_and_how_to_mend_it() {
         strangers.starts_with("planned joints (a, b) and measured joints (x) have no name in common; choose"),
         "{strangers}"
     );
+    // By name each would have the plan of its neighbour.
+    let mut apart = Log::default();
+    for (topic, first) in [("/planned_joint_states", 0), ("/joint_states", 1)] {
+        let names = [first, first + 1, first + 2].map(|k| format!("joint_{k}"));
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        apart.add(Channel::states(topic), 0..SAMPLES, |k| states(k, &names, &[0.1, 0.2, 0.3]));
+    }
+    let said = error(&apart, &ReadOptions::default());
+    assert!(
+        said.contains("counted from different numbers") && said.ends_with("--joints joint_1,joint_2"),
+        "{said}"
+    );
+    assert_eq!(
+        joints(&read_with(&apart, &options(&[], &[], &["joint_1", "joint_2"])).planned),
+        ["joint_1", "joint_2"]
+    );
+    // Which number is which joint nobody says.
+    for order in [[0, 1], [1, 0]] {
+        let mut nameless = Log::default();
+        let came = |k| states(k, &["a", "b"], &measurement(k));
+        nameless.add(Channel::states("/joint_states"), 0..4 * SAMPLES, came);
+        let channel = Channel::cdr("/forward_position_controller/commands", "std_msgs/msg/Float64MultiArray");
+        let sent = |k| encode::array(cdr::Kind::LittleEndian, &order.map(|joint| plan(k)[joint]));
+        nameless.add(channel, 0..4 * SAMPLES, sent);
+        nameless.messages.sort_by_key(|message| message.log_ns);
+        let said = error(&nameless, &ReadOptions::default());
+        assert!(said.contains("--joints=JOINT,JOINT,...;"), "{said}");
+    }
 }
 
 #[test]

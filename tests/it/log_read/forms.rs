@@ -200,6 +200,8 @@ fn topics_of_one_number_each_are_joints() {
     }
     let found = read_with(&log, &options(&planned[..1], &measured[..1], &["boom"]));
     assert_eq!((joints(&found.planned), joints(&found.measured)), (vec!["boom"], vec!["boom"]));
+    let error = super::error(&log, &options(&["/a/set"], &["/a/actual"], &[]));
+    assert!(error.contains("/a/set:data, one of each joint"), "{error}");
 }
 
 #[test]
