@@ -191,6 +191,12 @@ impl Setup {
         self.dwell_before_s.len()
     }
 
+    /// Whether times of movement, s, are as long as the task has them.
+    pub(super) fn has(&self, interval_s: &[f64]) -> bool {
+        let [shortest_s, longest_s] = self.interval_s;
+        interval_s.iter().all(|s| (shortest_s..=longest_s).contains(s))
+    }
+
     /// Arrival at each key point, s, from the times of movement between them, s.
     pub fn times_s(&self, interval_s: &[f64]) -> Vec<f64> {
         arrivals(interval_s, &self.dwell_before_s)
