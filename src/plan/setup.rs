@@ -73,6 +73,13 @@ impl Setup {
                 return Err(PlanError::KindsDiffer { joint: joint.name.clone(), arm: joint.kind });
             }
         }
+        for ((joint, &own), cylinder) in arm.chain.joints().iter().zip(&order).zip(arm.hydraulics.cylinders())
+        {
+            let rod_speed_m_s = task.limits[own].rod_speed_m_s;
+            if rod_speed_m_s.is_finite() && cylinder.is_none() {
+                return Err(PlanError::NoCylinder { joint: joint.name.clone(), rod_speed_m_s });
+            }
+        }
         let limits: Vec<JointLimits> =
             order.iter().enumerate().map(|(j, &own)| merged(task, &arm, j, own)).collect();
         let range_rad: Vec<[f64; 2]> = limits.iter().map(|limits| limits.range_rad).collect();
