@@ -25,8 +25,8 @@ pub enum ArmError {
     /// No posture within the limits has the tool there; what the nearest attempt leaves.
     #[error(
         "the tool pose is out of reach by {} and {}{}",
-        if *distance_m < 1e-6 { format!("{distance_m:.1e} m") } else { format!("{:.3} mm", 1e3 * distance_m) },
-        if *angle_rad < NEARLY[1] { format!("{angle_rad:.1e} rad") } else { Degrees(*angle_rad).to_string() },
+        if (ROUNDED..1e-6).contains(distance_m) { format!("{distance_m:.1e} m") } else { format!("{:.3} mm", 1e3 * distance_m) },
+        if (ROUNDED..NEARLY[1]).contains(angle_rad) { format!("{angle_rad:.1e} rad") } else { Degrees(*angle_rad).to_string() },
         if *distance_m < NEARLY[0] && *angle_rad < NEARLY[1] {
             "; the arm comes no nearer, as one of few joints does that cannot choose all of a pose: give this key point by its joints"
         } else {
@@ -35,6 +35,9 @@ pub enum ArmError {
     )]
     Unreachable { distance_m: f64, angle_rad: f64 },
 }
+
+/// Less is rounding, m and rad.
+const ROUNDED: f64 = 1e-12;
 
 /// A pose that is missed by no more is rounded, m and rad.
 const NEARLY: [f64; 2] = [1e-3, 2e-3];

@@ -178,6 +178,11 @@ pub(super) enum JointKind {
 }
 
 impl JointKind {
+    /// As the file has it.
+    pub(super) fn name(self) -> String {
+        format!("{self:?}").to_lowercase()
+    }
+
     /// How a joint of one degree of freedom moves; `None` of the others.
     pub(super) fn moves(self) -> Option<series::JointKind> {
         match self {
@@ -264,5 +269,7 @@ fn numbers<'de, const N: usize, D: Deserializer<'de>>(deserializer: D) -> Result
     let text = Cow::<str>::deserialize(deserializer)?;
     let found: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
     let found = found.ok().and_then(|found| <[f64; N]>::try_from(found).ok());
-    found.ok_or_else(|| D::Error::custom(format_args!("{text:?} is not {N} numbers")))
+    let what = if N == 1 { "a number".to_owned() } else { format!("{N} numbers") };
+    let why = if text.contains("${") { ": this is xacro, which is no URDF yet: run xacro first" } else { "" };
+    found.ok_or_else(|| D::Error::custom(format_args!("{text:?} is not {what}{why}")))
 }

@@ -285,7 +285,7 @@ impl<'a> Tree<'a> {
             JointKind::Revolute | JointKind::Prismatic => (given.lower, given.upper),
             other => {
                 let expected = "revolute, continuous, prismatic or fixed";
-                return Err(self.at.unexpected(element, format!("the type {other:?}"), expected));
+                return Err(self.at.unexpected(element, format!("the type {}", other.name()), expected));
             }
         };
         if let Some(mimic) = &joint.mimic {
@@ -312,6 +312,12 @@ impl<'a> Tree<'a> {
         }
         if joint.kind == JointKind::Prismatic && widest_rad > LONGEST_M {
             return Err(wrong(&found, "metres: millimetres times 0.001"));
+        }
+        for (name, value) in [("velocity", given.velocity), ("effort", given.effort)] {
+            if value < 0.0 {
+                let expected = "a limit of zero, which says nothing, or more";
+                return Err(wrong(&format!("{name} {value}"), expected));
+            }
         }
         // The format's default, zero, means that nothing is said.
         let said = |value: f64| if value > 0.0 { value } else { f64::INFINITY };

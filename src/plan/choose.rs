@@ -109,6 +109,21 @@ impl Choice {
 }
 
 impl Choice {
+    /// The least time, where no plan by times alone keeps all limits; `nearest`: that which breaks them least.
+    pub fn without_front(nearest: Timing, ceilings: &Ceilings) -> Self {
+        Self {
+            timing: nearest,
+            rule: Rule::Best(Objective::Duration),
+            weights: None,
+            within: 0,
+            horizon_s: None,
+            of: 0,
+            evaluations: 0,
+            merit: Merit::alone(Objective::Duration),
+            ceilings: within_reach(ceilings),
+        }
+    }
+
     /// The same rule at a plan that is above ceilings, which another shape is to keep to.
     pub fn above(self, timing: Timing, ceilings: &Ceilings) -> Self {
         Self { timing, within: 0, horizon_s: None, ceilings: within_reach(ceilings), ..self }

@@ -31,6 +31,11 @@ pub enum PlanError {
         }
     )]
     KindsDiffer { joint: String, arm: JointKind },
+    #[error(
+        "the task limits the rod speed of {joint} to {rod_speed_m_s} m/s, and no cylinder of {joint} is known, so that nothing keeps it: \
+         name the file of its cylinders (hydraulics = \"FILE\") or leave {joint} out of limits.rod_speed_m_s"
+    )]
+    NoCylinder { joint: String, rod_speed_m_s: f64 },
     #[error("key point {point} cannot be reached")]
     Unreachable {
         /// Number of the key point, from 1.

@@ -1,6 +1,6 @@
 //! One evaluation: the objectives of a plan and how near it comes to every limit.
 
-use super::{Setup, limit::Limit, mesh::Mesh};
+use super::{KEPT_SHARE, Setup, limit::Limit, mesh::Mesh};
 use crate::{
     spline::Motion,
     task::{Objective, Objectives},
@@ -121,7 +121,7 @@ impl Evaluator {
     }
 }
 
-/// How far a share exceeds its limit: 0 to 10. At a dead centre the share has no bound.
+/// How far a share exceeds its limit: 0 to 10, and 0 of one that is kept but for rounding. At a dead centre the share has no bound.
 pub fn excess(share: f64) -> f64 {
-    (share - 1.0).clamp(0.0, 10.0)
+    if share <= KEPT_SHARE { 0.0 } else { (share - 1.0).min(10.0) }
 }

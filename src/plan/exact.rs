@@ -78,9 +78,8 @@ pub(super) fn quickened(setup: &Setup, timing: &Timing) -> Option<Timing> {
     const HALVINGS: usize = 12;
     let mut evaluator = Evaluator::new(setup);
     let scaled = |by: f64| -> Option<Vec<f64>> {
-        let least_s = setup.interval_s[0];
         let scaled: Vec<f64> = timing.interval_s.iter().map(|s| s * by).collect();
-        scaled.iter().all(|s| *s >= least_s).then_some(scaled)
+        setup.has(&scaled).then_some(scaled)
     };
     let (mut broken, mut kept) = (0.9, 1.0);
     let keeps = |by: f64, evaluator: &mut Evaluator| {
@@ -151,7 +150,7 @@ pub(super) fn kept_front(setup: &Setup, front: &[Timing], most: usize) -> (Vec<T
     // Slowing down all of it gave away time wherever the limit was kept, and a torque at rest is no less for it: the
     // plan before goes another way.
     let quicker = fastest_of(&slowed).map(|plan| Timing {
-        interval_s: plan.interval_s.iter().map(|s| s * QUICKER).collect(),
+        interval_s: plan.interval_s.iter().map(|s| (s * QUICKER).max(setup.interval_s[0])).collect(),
         ..plan.clone()
     });
     let mut used = 0;
@@ -183,7 +182,7 @@ fn slow(setup: &Setup, evaluator: &mut Evaluator, interval_s: &[f64]) -> Option<
             return evaluated(setup, evaluator, here);
         }
         here = slowed(&here, &margins);
-        if here.iter().any(|s| *s > setup.interval_s[1]) {
+        if !setup.has(&here) {
             return None;
         }
     }

@@ -48,6 +48,6 @@ pub use sampled_motion::SampledMotion;
 pub use search::{Found, Phase, Progress, Search, search};
 pub use seed::fastest;
 pub use setup::Setup;
-pub use shape::{MOST_PIECES, NoShape, Shape, shape, smoother};
+pub use shape::{MOST_PIECES, NoShape, Shape, fastest_shape, shape, smoother};
 pub use speed_room::SpeedRoom;
 pub use via::Via;

@@ -16,7 +16,7 @@ pub fn bought(setup: &Setup, timing: &Timing) -> Vec<(Objective, f64)> {
     let rest_s = setup.resting_s();
     let slower = (longer_s * (1.0 - HELD_BACK) - rest_s) / (timing.objectives[Objective::Duration] - rest_s);
     let slower_s: Vec<f64> = timing.interval_s.iter().map(|s| s * slower).collect();
-    let slower = (slower.is_finite() && slower_s.iter().all(|s| *s <= setup.interval_s[1]))
+    let slower = (slower.is_finite() && setup.has(&slower_s))
         .then(|| exact::evaluated(setup, &mut Evaluator::new(setup), slower_s))
         .flatten()
         .filter(|slower| slower.violation <= 0.0);

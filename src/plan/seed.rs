@@ -226,6 +226,7 @@ fn curve(setup: &Setup, fastest: &Timing, durations_s: &[f64], power: f64, most:
         let mut descended = descend(setup, &mut evaluator, &start_s, &goal);
         // A plan that is slowed down evenly keeps its limits: a descent that lost them is no better.
         if descended.timing.as_ref().is_none_or(|timing| timing.violation > 0.0)
+            && setup.has(&start_s)
             && let Some(objectives) = evaluator.evaluate(setup, &start_s)
             && evaluator.violation() <= 0.0
         {

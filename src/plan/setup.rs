@@ -73,6 +73,13 @@ impl Setup {
                 return Err(PlanError::KindsDiffer { joint: joint.name.clone(), arm: joint.kind });
             }
         }
+        for ((joint, &own), cylinder) in arm.chain.joints().iter().zip(&order).zip(arm.hydraulics.cylinders())
+        {
+            let rod_speed_m_s = task.limits[own].rod_speed_m_s;
+            if rod_speed_m_s.is_finite() && cylinder.is_none() {
+                return Err(PlanError::NoCylinder { joint: joint.name.clone(), rod_speed_m_s });
+            }
+        }
         let limits: Vec<JointLimits> =
             order.iter().enumerate().map(|(j, &own)| merged(task, &arm, j, own)).collect();
         let range_rad: Vec<[f64; 2]> = limits.iter().map(|limits| limits.range_rad).collect();
@@ -189,6 +196,12 @@ impl Setup {
     /// Number of intervals between key points: the variables of a plan.
     pub fn interval_count(&self) -> usize {
         self.dwell_before_s.len()
+    }
+
+    /// Whether times of movement, s, are as long as the task has them.
+    pub(super) fn has(&self, interval_s: &[f64]) -> bool {
+        let [shortest_s, longest_s] = self.interval_s;
+        interval_s.iter().all(|s| (shortest_s..=longest_s).contains(s))
     }
 
     /// Arrival at each key point, s, from the times of movement between them, s.

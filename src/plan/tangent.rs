@@ -1,6 +1,6 @@
 //! Values and slopes of merit and constraints at a timing.
 
-use super::{Evaluator, Setup, Timing, goal::Goal, quadratic::PRICE};
+use super::{Evaluator, KEPT_SHARE, Setup, Timing, goal::Goal, quadratic::PRICE};
 use crate::math::dot;
 
 /// Step of the difference quotients, in logarithms.
@@ -36,7 +36,11 @@ impl Point {
             .iter()
             .zip(goal.ceilings.plan())
             .map(|(f, ceiling)| (f / ceiling.max(f64::MIN_POSITIVE)).max(1e-6).ln());
-        let limits = evaluator.peaks.iter().map(|share| share.clamp(1e-6, 1e6).ln() + WITHIN);
+        // What stays at the end of its range is at it and no nearer, whatever the times.
+        let limit = |share: &f64| {
+            if (share - 1.0).abs() < KEPT_SHARE - 1.0 { 0.0 } else { share.clamp(1e-6, 1e6).ln() + WITHIN }
+        };
+        let limits = evaluator.peaks.iter().map(limit);
         let constraint = ceilings.chain(limits).collect();
         let timing = Timing { interval_s, objectives, violation: evaluator.violation() };
         Some(Self { x, timing, merit: goal.merit.of(&objectives), constraint })

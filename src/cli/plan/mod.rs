@@ -176,8 +176,8 @@ impl Args {
     ) -> Result<CliError, CliError> {
         let joints = request.setup.joint_names();
         let (evaluation, mut lines) = match &failure {
-            PlanFailure::Infeasible { nearest, stopping_s } => {
-                let mut lines = broken_lines(&joints, request.task.interval_s[1], nearest);
+            PlanFailure::Infeasible { nearest, stopping_s, longest_s } => {
+                let mut lines = broken_lines((&request.task, &joints), *longest_s, nearest);
                 lines.extend(stopping_s.map(|stopping_s| {
                     format!("a plan of {stopping_s:.2} s that stops at every key point keeps them: give each dwell_s = 0")
                 }));
@@ -189,7 +189,16 @@ impl Args {
             }
             _ => return Ok(failure.into()),
         };
-        if matches!(failure, PlanFailure::Ceilings { .. }) && self.options().shape == Shaping::Timing {
+        // What swings or weighs too much does so in any shape, unless some plan is known that keeps it.
+        let hopeful = match &failure {
+            PlanFailure::Infeasible { nearest, stopping_s, longest_s } => {
+                stopping_s.is_some() || longest_s.is_some() || nearest.slower().is_some()
+            }
+            _ => true,
+        };
+        if self.options().shape != Shaping::Timing {
+            lines.push("no free shape was found that keeps them, either".to_owned());
+        } else if hopeful {
             lines.push(
                 "with --shape free the curve between the key points is sought, too: it may keep them"
                     .to_owned(),

@@ -9,6 +9,7 @@ use thiserror::Error;
 use super::{csv::AngleUnit, read::recording::Recording};
 use crate::{
     atomic_file::AtomicError,
+    math::range,
     series::{JointKind, Track, align},
     units::{DEGREE_RAD, nanoseconds, seconds_since},
 };
@@ -66,6 +67,7 @@ impl RunTable {
             (JointKind::Slides, AngleUnit::Degrees) => ("mm", 1000.0),
         };
         let command = recording.command.as_ref().map(|command| &command.series);
+        let speeds = recording.planned.tracks.iter().any(|track| track.velocity().is_some());
         let mut all: Vec<Samples> = Vec::new();
         for joint in joints(recording) {
             let mut add = |kind: JointKind, what: &str, per: &str, t_s: &[f64], values: &[f64]| {
@@ -81,8 +83,10 @@ impl RunTable {
             for (what, track) in [("planned", planned), ("measured", measured), ("command", command)] {
                 let Some(track) = track else { continue };
                 add(track.kind(), what, "", track.t_s(), track.position());
-                if let Some(velocity) = track.velocity() {
-                    add(track.kind(), what, "_s", track.t_s(), velocity);
+                // No speeds are read of a joint that stands; a controller that takes speeds takes those of all joints.
+                let still = || (what == "planned" && speeds && stands(track)).then(|| vec![0.0; track.len()]);
+                if let Some(velocity) = track.velocity().map(<[f64]>::to_vec).or_else(still) {
+                    add(track.kind(), what, "_s", track.t_s(), &velocity);
                 }
             }
             if let Some(pair) = planned.zip(measured).and_then(|(planned, measured)| align(planned, measured))
@@ -132,6 +136,13 @@ impl RunTable {
     pub fn column_names(&self) -> impl Iterator<Item = &str> {
         ["stamp_ns", "time_s"].into_iter().chain(self.names.iter().map(String::as_str))
     }
+}
+
+/// Whether a joint stays where it is, but for rounding.
+fn stands(track: &Track) -> bool {
+    const ROUNDED: f64 = 1e-9;
+    let [least, most] = range(track.position().iter().copied());
+    most - least < ROUNDED
 }
 
 /// Names of the joints of a table.

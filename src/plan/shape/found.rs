@@ -4,6 +4,7 @@ use super::{
     aim::{Aim, Pace},
     curve::{Bounds, Curve, Frame},
     descend::descend,
+    pace::{factor, quickened},
 };
 use crate::{
     math::smooth_step,
@@ -103,6 +104,20 @@ pub fn smoother(
     pieces: Option<usize>,
 ) -> Result<Shape, NoShape> {
     sought(setup, timing, Aim::smoother(ceilings), ceilings, pieces)
+}
+
+/// The fastest shape within ceilings, from times that need not keep the limits; `pieces` as of [`shape`].
+///
+/// # Errors
+///
+/// [`NoShape`] if the timing keeps them and is faster, or no shape does.
+pub fn fastest_shape(
+    setup: &Setup,
+    timing: &Timing,
+    ceilings: &Ceilings,
+    pieces: Option<usize>,
+) -> Result<Shape, NoShape> {
+    sought(setup, timing, Aim::fastest(), ceilings, pieces)
 }
 
 /// Where a descent begins.
@@ -273,7 +288,8 @@ fn sought_from(
     }
     let evaluation = found.ok_or(NoShape::NoGain)?;
     let within = Objective::OF_PLAN.iter().all(|&k| evaluation.objectives[k] <= ceilings[k]);
-    if within && (!chosen.within(ceilings) || aim.merit(&evaluation.objectives) < aim.merit(chosen)) {
+    let kept = timing.violation <= 0.0 && chosen.within(ceilings);
+    if within && (!kept || aim.merit(&evaluation.objectives) < aim.merit(chosen)) {
         Ok(Shape { evaluation, pieces, steps })
     } else {
         Err(NoShape::NoGain)
@@ -348,34 +364,6 @@ fn kept(setup: &Setup, frame: &Frame<'_>, curve: &Curve) -> Result<PlanEvaluatio
         frame.clamp(&mut interval_s);
     }
     Err(NoShape::NoGain)
-}
-
-/// Halvings of what a plan that touches no limit may be quickened by, and the distance to a limit that is worth them.
-const HALVINGS: usize = 12;
-const WORTH: f64 = 1e-4;
-
-/// The plan, as much faster as its limits allow all of it.
-fn quickened(setup: &Setup, plan: PlanEvaluation) -> PlanEvaluation {
-    let timed = plan.margins.iter().filter(|margin| margin.limit != Limit::Position);
-    let least = timed.map(factor).fold(0.0, f64::max);
-    if !(0.1..1.0 - WORTH).contains(&least) {
-        return plan;
-    }
-    let scaled = |by: f64| plan.paced(setup, by).filter(|plan| plan.broken().is_empty());
-    let (mut best, mut range) = (None, [least, 1.0]);
-    for _ in 0..HALVINGS {
-        let by = 0.5 * (range[0] + range[1]);
-        match scaled(by) {
-            Some(faster) => (best, range[1]) = (Some(faster), by),
-            None => range[0] = by,
-        }
-    }
-    best.unwrap_or(plan)
-}
-
-/// How much slower a plan is at the limit that it breaks: enough for rates, of torques and forces only a beginning.
-fn factor(margin: &Margin) -> f64 {
-    margin.slower().unwrap_or(margin.share)
 }
 
 /// Arrivals at the key points, s, and the free points between them.

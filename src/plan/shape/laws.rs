@@ -84,7 +84,7 @@ fn check(setup: &Setup, found: &Shape, motion: &Motion) {
     assert!(highest <= 1.0 + 1e-9, "{highest}");
     // What a controller makes of the trajectory keeps them too.
     let points_hz = setup.points_hz(motion);
-    let curve = setup.through_points(&states(motion, 1.0 / points_hz), 1.0 / points_hz);
+    let curve = setup.through_points(&states(motion, 0.0, 1.0 / points_hz), 1.0 / points_hz);
     let most = curve.iter().map(|(_, margin)| margin.share).fold(0.0, f64::max);
     assert!(most <= 1.0 + BETWEEN, "{most} with {points_hz} points a second");
     for margin in setup.margins(motion, &mut Evaluator::new(setup)) {

@@ -9,6 +9,7 @@ mod found;
 mod interior;
 mod loads;
 mod model;
+mod pace;
 mod point;
 mod response;
 mod row;
@@ -17,4 +18,4 @@ mod step;
 #[cfg(test)]
 mod laws;
 
-pub use found::{MOST_PIECES, NoShape, Shape, shape, smoother};
+pub use found::{MOST_PIECES, NoShape, Shape, fastest_shape, shape, smoother};

@@ -1,5 +1,7 @@
 //! Plans as tables.
 
+use std::fmt::Write;
+
 use super::{
     broken::TIGHT,
     degrees::degrees,
@@ -27,22 +29,25 @@ pub(crate) fn document(
     planned: &Planned,
 ) -> Document {
     let start = if options.search.seeded { "descents" } else { "random plans" };
-    let searched = format!(
-        "{} on the Pareto front, from {} evaluations: {algorithm}, started \
-         from {start}, seed {}. Hypervolume {:.4} of the box from the best of each objective to {BEYOND} times the \
-         range.",
+    let mut searched = format!(
+        "{} on the Pareto front, from {} evaluations: {algorithm}, started from {start}, seed {}.",
         counted(planned.front.len(), "plan"),
         planned.evaluations,
         options.search.seed,
-        planned.hypervolume,
     );
+    if !planned.front.is_empty() {
+        let _ = write!(
+            searched,
+            " Hypervolume {:.4} of the box from the best of each objective to {BEYOND} times the range.",
+            planned.hypervolume
+        );
+    }
     let best = Objective::OF_PLAN.iter().zip(&planned.best);
     let mut rows: Vec<Vec<String>> = best
         .map(|(k, evaluation)| row(&format!("{}  {}", k.letter(), k.row().best), evaluation, &planned.joints))
         .collect();
-    if let Some(shaped) = &planned.shaped {
-        rows.push(row("by times alone", &shaped.timing, &planned.joints));
-    }
+    let by_times = planned.shaped.as_ref().and_then(|shaped| shaped.timing.as_ref());
+    rows.extend(by_times.map(|timing| row("by times alone", timing, &planned.joints)));
     rows.push(row("chosen", &planned.chosen, &planned.joints));
     let growing =
         "The fastest plan was still becoming faster when the search ended: allow more --evaluations.";
@@ -68,7 +73,7 @@ pub(crate) fn document(
                 .chain(exchange(planned).map(Sentence::finding))
                 .chain(shape(planned).map(Sentence::finding))
                 .chain(shortest(planned).map(Sentence::finding))
-                .chain([Sentence::advice(another)]),
+                .chain((!planned.front.is_empty()).then(|| Sentence::advice(another))),
         ));
     document.sections.extend(near(options.near_s, planned));
     document.sections.extend(degrees(options.degrees, planned));
@@ -109,7 +114,7 @@ fn kept(evaluation: &PlanEvaluation) -> String {
 
 /// Intervals that the task allows no shorter.
 fn shortest(planned: &Planned) -> Option<String> {
-    let Planned { chosen, shortest_s, .. } = planned;
+    let Planned { chosen, interval_s: [shortest_s, _], .. } = planned;
     let held = chosen.interval_s.iter().filter(|s| **s * TIGHT < *shortest_s).count();
     (held > 0).then(|| {
         format!(
@@ -136,10 +141,17 @@ fn shape(planned: &Planned) -> Option<String> {
         });
         return why.map(|why| format!("Its shape is that of its times: {why}"));
     };
+    let Some(timing) = timing else {
+        return Some(format!(
+            "Its shape is free, {pieces} pieces an interval: by times alone no plan keeps all limits."
+        ));
+    };
     let change = |k: &Objective| {
         let (was, is) = (timing.objectives[*k], planned.chosen.objectives[*k]);
         // An arm without masses takes no power.
-        (was > 0.0).then(|| format!("{} {:+.1} %", k.row().short, 100.0 * (is / was - 1.0)))
+        // Rounded first: less than nothing by nothing is -0.0.
+        let percent = (1000.0 * (is / was - 1.0)).round() / 10.0 + 0.0;
+        (was > 0.0).then(|| format!("{} {percent:+.1} %", k.row().short))
     };
     let changes: Vec<String> = Objective::OF_PLAN.iter().filter_map(change).collect();
     Some(format!(
@@ -177,11 +189,20 @@ fn reason(ceilings: &Ceilings, planned: &Planned) -> String {
     } else {
         format!("{} of {} within {}", choice.within, choice.of, ceilings.join(", "))
     };
+    if choice.of == 0 {
+        return format!("{why}: there is no front to choose another from.");
+    }
     format!("{why}, chosen from {among}, then refined by this rule.")
 }
 
-/// What a little more time would buy.
+/// What a little more time would buy, where the task has more.
 fn exchange(planned: &Planned) -> Option<String> {
+    let Planned { chosen, interval_s: [_, longest_s], .. } = planned;
+    if chosen.interval_s.iter().all(|s| *s > longest_s * TIGHT) {
+        return Some(format!(
+            "All intervals have the longest duration allowed, {longest_s} s (interval_s): no plan of this task takes more time."
+        ));
+    }
     let less =
         |(k, share): &(Objective, f64)| format!("{:.1} % less {}", 100.0 * share.max(0.0), k.row().name);
     let less: Vec<String> = planned.bought.iter().map(less).collect();

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     arm::Chain,
     log::{LogWriter, Point, Role, Topics, WriteError, WriteOptions},
-    math::State,
+    math::{State, quintic},
     series::{Series, Track},
     spline::{Motion, Quantity, Samples},
     units::nanoseconds,
@@ -159,21 +159,35 @@ impl Planned<'_> {
 }
 
 impl Command<'_> {
-    /// Accelerations only where all of the instants are samples.
+    /// Accelerations only where all of the instants are samples, or between two whose accelerations are known.
     fn states(&self, names: &[&str], t_s: Vec<f64>) -> States {
         let mut found = Planned::Series(self.series).states(names, t_s);
-        let at = |name: &&str, t_s: f64| -> Option<f64> {
-            let joint = self.series.tracks.iter().position(|track| track.name() == *name)?;
-            let stamps = self.series.tracks.get(joint)?.t_s();
-            let sample = stamps.partition_point(|stamp| *stamp < t_s - 1e-6);
-            stamps.get(sample).filter(|stamp| (*stamp - t_s).abs() < 1e-6)?;
-            self.acceleration_rad_s2.get(joint)?.get(sample).copied()
-        };
-        let all = found.t_s.iter().flat_map(|t_s| names.iter().map(|name| at(name, *t_s)));
-        if let Some(acceleration) = all.collect::<Option<Vec<f64>>>() {
-            found.values[2] = acceleration;
-        }
+        let all = found.t_s.iter().flat_map(|t_s| names.iter().map(|name| self.at(name, *t_s)));
+        let Some(states) = all.collect::<Option<Vec<State>>>() else { return found };
+        found.values = [
+            states.iter().map(|state| state.position).collect(),
+            states.iter().map(|state| state.velocity).collect(),
+            states.iter().map(|state| state.acceleration).collect(),
+        ];
         found
+    }
+
+    /// At a sample as it is, between two by the curve that meets both.
+    fn at(&self, name: &str, t_s: f64) -> Option<State> {
+        const SAME_S: f64 = 1e-6;
+        let joint = self.series.tracks.iter().position(|track| track.name() == name)?;
+        let track = self.series.tracks.get(joint)?;
+        let state = |sample: usize| {
+            let acceleration = *self.acceleration_rad_s2.get(joint)?.get(sample)?;
+            Some(State { acceleration, ..track.held_at(*track.t_s().get(sample)?) })
+        };
+        let next = track.t_s().partition_point(|stamp| *stamp < t_s - SAME_S);
+        let next_s = *track.t_s().get(next)?;
+        if (next_s - t_s).abs() < SAME_S {
+            return state(next);
+        }
+        let before_s = *track.t_s().get(next.checked_sub(1)?)?;
+        Some(quintic(state(next - 1)?, state(next)?, next_s - before_s, t_s - before_s))
     }
 }
 

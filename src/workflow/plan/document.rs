@@ -127,7 +127,7 @@ pub struct ChosenPlan {
     /// By what share 1 % more time would lessen each other objective, by times alone; empty where it was given.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub bought_by_1_percent_of_time: BTreeMap<String, f64>,
-    /// The plan of the same rule by times alone; left out where the shape is not free.
+    /// The plan of the same rule by times alone; left out where the shape is not free, or no times alone keep all limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub timing_alone: Option<PlanEntry>,
     /// Root mean square jerk by joint, rad/s³; m/s³ of a joint that slides.
@@ -276,7 +276,11 @@ impl PlanDocument {
                 within_ceilings: Some(choice.within),
                 horizon_s: choice.horizon_s,
                 bought_by_1_percent_of_time: bought.collect(),
-                timing_alone: planned.shaped.as_ref().map(|shaped| PlanEntry::of(&shaped.timing)),
+                timing_alone: planned
+                    .shaped
+                    .as_ref()
+                    .and_then(|shaped| shaped.timing.as_ref())
+                    .map(PlanEntry::of),
                 ..alone.chosen
             },
             remarks: planned.remarks.as_slice().to_vec(),

@@ -2,9 +2,9 @@
 
 use super::PlanRequest;
 use crate::{
-    plan::{BETWEEN, Interpolation, Limit, PlanError, PlanEvaluation, Setup, fastest},
+    plan::{BETWEEN, Evaluator, Interpolation, Limit, PlanError, PlanEvaluation, Setup, Timing, fastest},
     remark::{Code, Remarks},
-    task::Objective,
+    task::{Objective, Task},
 };
 
 /// Share by which a plan has to be above a ceiling to be told: less is not seen in what is printed.
@@ -16,6 +16,12 @@ const FAR: f64 = 0.6;
 
 /// Share of the time of the fastest plan that stops at every key point have to save to be told.
 const SAVED: f64 = 0.03;
+
+/// Times the longest interval that is tried at least where none keeps the limits.
+const LONGER: f64 = 10.0;
+
+/// Times that the nearest plan is slowed down by first.
+const SLOWER: [f64; 4] = [1.2, 1.5, 2.0, 4.0];
 
 /// Evaluations of its search, of which a tenth of a second has many.
 const STOPPING: u64 = 1600;
@@ -69,8 +75,29 @@ impl PlanRequest {
             more |= key.dwell_s.is_none() && passed(point);
             key.dwell_s = key.dwell_s.or(Some(0.0));
         }
-        let setup = more.then(|| Setup::new(&task, self.setup.arm().clone()).ok())??;
-        Some(fastest(&setup, STOPPING)?.objectives[Objective::Duration])
+        let fastest = more.then(|| self.fastest_of(&task))??;
+        Some(fastest.objectives[Objective::Duration])
+    }
+
+    /// The longest interval of a plan that keeps all limits where intervals may be longer than the task has them, s; `None` where
+    /// that makes none.
+    pub(super) fn longest_s(&self, nearest: &PlanEvaluation) -> Option<f64> {
+        let [shortest_s, longest_s] = self.task.interval_s;
+        let longer = nearest.slower().unwrap_or(1.0).max(LONGER);
+        let task = Task { interval_s: [shortest_s, longer * longest_s], ..self.task.clone() };
+        // A load that is nearly one at rest falls so little with time that a search does not see it.
+        let slower = |by: &f64| {
+            let interval_s: Vec<f64> = nearest.interval_s.iter().map(|s| by * s).collect();
+            self.setup.keeps(&interval_s, &mut Evaluator::new(&self.setup)).then_some(interval_s)
+        };
+        let found = SLOWER.iter().find_map(slower).or_else(|| Some(self.fastest_of(&task)?.interval_s))?;
+        let longest = found.into_iter().fold(0.0, f64::max);
+        (longest > longest_s).then_some(longest)
+    }
+
+    /// The fastest plan of a task like this, quickly; `None` where it has none.
+    fn fastest_of(&self, task: &Task) -> Option<Timing> {
+        fastest(&Setup::new(task, self.setup.arm().clone()).ok()?, STOPPING)
     }
 
     /// What is said of a task whose plans by times alone swing so far between key points that stops would be faster.

@@ -30,9 +30,10 @@ pub enum PlanFailure {
     Arm(#[from] ArmError),
     #[error(transparent)]
     Plan(Box<PlanError>),
-    /// No timing keeps all limits; what the nearest one breaks, and what a plan takes that stops at every key point, if one keeps them.
-    #[error("no plan keeps all limits")]
-    Infeasible { nearest: Box<PlanEvaluation>, stopping_s: Option<f64> },
+    /// No timing keeps all limits, and no free shape where one was sought; what the nearest one breaks, what a plan takes that stops at
+    /// every key point, if one keeps them, and the longest interval of one that keeps them with intervals longer than the task allows.
+    #[error("by times alone no plan keeps all limits")]
+    Infeasible { nearest: Box<PlanEvaluation>, stopping_s: Option<f64>, longest_s: Option<f64> },
     #[error("no plan keeps to the ceilings of the task")]
     Ceilings { nearest: Box<PlanEvaluation> },
 }

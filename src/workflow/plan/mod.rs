@@ -13,8 +13,8 @@ mod shaped;
 
 use crate::{
     plan::{
-        Choice, NoShape, PlanError, PlanEvaluation, Progress, Reference, Rule, Search, Timing, bought, ends,
-        near, search,
+        Choice, NoShape, PlanEvaluation, Progress, Reference, Rule, Search, Timing, bought, ends, near,
+        search,
     },
     remark::Remarks,
     task::{Ceilings, Objective, Objectives, Task, Weights},
@@ -27,7 +27,7 @@ use degrees::degrees;
 pub use document::{ChosenPlan, MarginEntry, PlanDocument, PlanEntry};
 pub use failure::PlanFailure;
 pub use request::{PlanRequest, SAMPLE_TASK, TaskFiles};
-use shaped::{Made, chosen};
+use shaped::{Made, chosen, without_front};
 pub use shaped::{Shaped, Shaping};
 
 /// How to plan.
@@ -52,7 +52,7 @@ pub struct Options {
 pub struct Planned {
     /// Names of the joints, base first.
     pub joints: Vec<String>,
-    /// Plans on the Pareto front, fastest first.
+    /// Plans on the Pareto front, fastest first; none where only a free shape keeps all limits.
     pub front: Vec<Timing>,
     /// Their arrivals at the key points, s.
     pub times_s: Vec<Vec<f64>>,
@@ -68,8 +68,8 @@ pub struct Planned {
     pub bought: Vec<(Objective, f64)>,
     /// The smoothest plans within round times around the one asked for, with these times, s.
     pub near: Vec<(f64, PlanEvaluation)>,
-    /// Shortest interval between key points that the task allows, s.
-    pub shortest_s: f64,
+    /// Shortest and longest interval between key points that the task allows, s.
+    pub interval_s: [f64; 2],
     /// Degree of the task's splines.
     pub degree: u8,
     /// Plans by splines of the other degrees, where they were asked for.
@@ -91,6 +91,21 @@ pub struct Planned {
     pub convergence: Vec<Step>,
     /// Doubts about the task.
     pub remarks: Remarks,
+}
+
+/// A chosen plan that is so much faster than all of the front, as a share, is the fastest of it.
+const FASTER: f64 = 0.005;
+
+/// Puts a chosen plan before a front that it is clearly faster than, in place of those that it is better than in everything.
+fn ahead(front: &mut Vec<Timing>, chosen: &Timing) {
+    let took_s = |timing: &Timing| timing.objectives[Objective::Duration];
+    if chosen.violation > 0.0
+        || front.first().is_none_or(|first| took_s(chosen) >= (1.0 - FASTER) * took_s(first))
+    {
+        return;
+    }
+    front.retain(|timing| !chosen.objectives.within(&timing.objectives));
+    front.insert(0, chosen.clone());
 }
 
 /// Searches and chooses.
@@ -117,7 +132,7 @@ pub fn run(
 ) -> Result<Planned, PlanFailure> {
     let PlanRequest { task, setup, .. } = request;
     let mut growth = Growth::default();
-    let found = search(setup, &options.search, |progress| {
+    let mut found = search(setup, &options.search, |progress| {
         growth.see(progress);
         let (phase, evaluations) = (progress.phase, progress.evaluations);
         ::log::debug!("{phase:?}: generation {}, {evaluations} evaluations", progress.generation);
@@ -130,15 +145,15 @@ pub fn run(
         found.generations
     );
     let evaluation = |timing: &Timing| PlanEvaluation::of(setup, &setup.times_s(&timing.interval_s));
-    let Some(ends) = ends(&found.front) else {
-        let nearest =
-            found.nearest.ok_or(PlanError::Times { found: 0, expected: setup.interval_count() + 1 })?;
-        let nearest = Box::new(evaluation(&nearest)?);
-        return Err(PlanFailure::Infeasible { nearest, stopping_s: request.stopping_s() });
-    };
     let weights = options.weights.or(task.weights);
     let rule = options.rule.unwrap_or(if weights.is_some() { Rule::Weights } else { Rule::Ideal });
-    let (choice, own) = chosen(setup, task, options.shape, (&found.front, (rule, weights)))?;
+    let (choice, own) = if found.front.is_empty() {
+        without_front(request, found.nearest, options.shape)?
+    } else {
+        chosen(setup, task, options.shape, (&found.front, (rule, weights)))?
+    };
+    ahead(&mut found.front, &choice.timing);
+    let ends = ends(&found.front).unwrap_or_default();
     let mut remarks = request.of_key_points();
     let fastest_s = found.front.first().map(|timing| timing.objectives[Objective::Duration]);
     if let Some(fastest_s) = fastest_s.filter(|_| own.shaped.is_none()) {
@@ -186,7 +201,7 @@ pub fn run(
         bought: if shaped.is_none() { bought(setup, &choice.timing) } else { Vec::new() },
         shaped,
         near: near.unwrap_or_default(),
-        shortest_s: task.interval_s[0],
+        interval_s: task.interval_s,
         convergence: growth.steps(reference, found.evaluations, hypervolume),
         choice,
         front: found.front,

@@ -1,10 +1,10 @@
 //! The plan of a choice, in the shape asked for.
 
-use super::failure::PlanFailure;
+use super::{PlanRequest, failure::PlanFailure};
 use crate::{
     plan::{
-        Choice, NoChoice, NoShape, PlanError, PlanEvaluation, Rule, Setup, Shape, Timing, choose, shape,
-        smoother,
+        Choice, NoChoice, NoShape, PlanError, PlanEvaluation, Rule, Setup, Shape, Timing, choose,
+        fastest_shape, shape, smoother,
     },
     task::{Ceilings, Objective, Task, Weights},
 };
@@ -22,8 +22,8 @@ pub enum Shaping {
 /// What a free shape gained.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shaped {
-    /// The plan of the same rule by times alone.
-    pub timing: PlanEvaluation,
+    /// The plan of the same rule by times alone; `None` where no times alone keep all limits.
+    pub timing: Option<PlanEvaluation>,
     /// Pieces that every interval between key points was split into.
     pub pieces: usize,
 }
@@ -51,9 +51,11 @@ impl Made {
         Ok(match shaping {
             Shaping::Timing => Self { plan: timing, shaped: None, no_shape: None },
             Shaping::Free(pieces) => match of_choice(setup, task, choice, pieces) {
-                Ok(Shape { evaluation, pieces, .. }) => {
-                    Self { plan: evaluation, shaped: Some(Shaped { timing, pieces }), no_shape: None }
-                }
+                Ok(Shape { evaluation, pieces, .. }) => Self {
+                    plan: evaluation,
+                    shaped: Some(Shaped { timing: Some(timing), pieces }),
+                    no_shape: None,
+                },
                 Err(why) => Self { plan: timing, shaped: None, no_shape: Some(why) },
             },
         })
@@ -94,6 +96,30 @@ pub(super) fn chosen(
         }
     }
     Err(PlanFailure::Ceilings { nearest: Box::new(PlanEvaluation::of(setup, &times_s)?) })
+}
+
+/// The fastest plan in a free shape where no plan by times alone keeps all limits; `nearest`: that which breaks them least.
+///
+/// # Errors
+///
+/// [`PlanFailure`] if no free shape is asked for, or none keeps the limits, with what comes nearest.
+pub(super) fn without_front(
+    request: &PlanRequest,
+    nearest: Option<Timing>,
+    shaping: Shaping,
+) -> Result<(Choice, Made), PlanFailure> {
+    let PlanRequest { task, setup, .. } = request;
+    let nearest = nearest.ok_or(PlanError::Times { found: 0, expected: setup.interval_count() + 1 })?;
+    if let Shaping::Free(pieces) = shaping
+        && let Ok(Shape { evaluation, pieces, .. }) = fastest_shape(setup, &nearest, &task.ceilings, pieces)
+    {
+        let shaped = Some(Shaped { timing: None, pieces });
+        let made = Made { plan: evaluation, shaped, no_shape: None };
+        return Ok((Choice::without_front(nearest, &task.ceilings), made));
+    }
+    let nearest = Box::new(PlanEvaluation::of(setup, &setup.times_s(&nearest.interval_s))?);
+    let longest_s = request.longest_s(&nearest);
+    Err(PlanFailure::Infeasible { nearest, stopping_s: request.stopping_s(), longest_s })
 }
 
 /// The smoothest shape keeps the time of its choice, unless that is above a ceiling.

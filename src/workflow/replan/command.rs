@@ -2,14 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{ReplanFailure, subject::Subject};
+use super::{
+    ReplanFailure,
+    points::{Checked, checked, nearest},
+    subject::Subject,
+};
 use crate::{
     fit::{
-        Chance, Fit, JointFit, JointStep, Learning, Learnt, Oscillation, Room, SHARE, STEP_S, Step, Stop,
-        Trial, learn, predict,
+        Chance, Fit, JointFit, JointStep, Learning, Learnt, Oscillation, Room, SHARE, Step, Stop, Trial,
+        learn, predict,
     },
-    math::{State, range, whole},
-    plan::{BETWEEN, Interpolation, Limit, Margin, Setup, SpeedRoom},
+    math::{State, range},
+    plan::{BETWEEN, Limit, Margin, Setup, SpeedRoom},
     series::{JointKind, Series, Track, align},
     units::DEGREE_RAD,
 };
@@ -296,40 +300,6 @@ fn gentle(kind: JointKind, planned: &[[f64; 4]], made: &JointStep) -> (f64, Opti
     }
     let share = SHARES.into_iter().find(|share| peak(*share) <= most).unwrap_or(0.0);
     (share, Some(Limit::Acceleration))
-}
-
-/// How something is interpolated, and how many steps a point lies after the one before.
-type Checked = (Interpolation, usize);
-
-/// All margins, by interpolation: of the samples, and of the trajectory in the log.
-fn checked(setup: &Setup, sent: &[Vec<State>], points_hz: f64) -> Vec<(Checked, Margin)> {
-    let through = |stride: usize| {
-        let every = |states: &Vec<State>| states.iter().copied().step_by(stride).collect();
-        let points: Vec<Vec<State>> = sent.iter().map(every).collect();
-        let found = setup.through_points(&points, stride as f64 * STEP_S).into_iter();
-        found.map(move |(how, margin)| ((how, stride), margin))
-    };
-    let mut strides = vec![1, stride(points_hz)];
-    strides.dedup();
-    strides.into_iter().flat_map(through).collect()
-}
-
-/// Samples from one point of a trajectory to the next.
-pub(super) fn stride(points_hz: f64) -> usize {
-    whole((1.0 / (points_hz * STEP_S)).round()).max(1)
-}
-
-/// Of each limit the margin that is used most.
-fn nearest(all: Vec<(Checked, Margin)>) -> Vec<Margin> {
-    let mut tops: Vec<Margin> = Vec::new();
-    for (_, margin) in all {
-        match tops.iter_mut().find(|top| (top.limit, top.joint) == (margin.limit, margin.joint)) {
-            Some(top) if top.share >= margin.share => {}
-            Some(top) => *top = margin,
-            None => tops.push(margin),
-        }
-    }
-    tops
 }
 
 fn states(planned: &[[f64; 4]], correction: &[[f64; 3]], share: f64) -> Vec<State> {

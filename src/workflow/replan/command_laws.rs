@@ -4,14 +4,15 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal, Uniform};
 
 use super::{
-    command::{Commanded, commanded, stride},
+    command::{Commanded, commanded},
+    points::{Checked, checked},
     subject::Subject,
 };
 use crate::{
     arm::Arm,
-    fit::{Fit, Learning, Observation, STEP_S, Trial, fit},
+    fit::{Fit, Learning, Observation, Trial, fit},
     math::State,
-    plan::{BETWEEN, Interpolation, Limit, Margin, PlanEvaluation, Setup},
+    plan::{BETWEEN, Limit, Margin, PlanEvaluation, Setup},
     rng::{Stream, stream},
     series::{Series, Track},
     task::{KeyPoint, Place, Task},
@@ -225,23 +226,17 @@ fn broken(seed: u64, Case { setup, plan, command, plain, points_hz }: &Case) -> 
             }
         }
     }
-    for how in Interpolation::ALL {
-        for stride in [1, stride(*points_hz)] {
-            let margins = |of: &Commanded| {
-                let points: Vec<Vec<State>> =
-                    states(of).map(|all| all.into_iter().step_by(stride).collect()).collect();
-                setup.command_margins(&points, stride as f64 * STEP_S, how)
-            };
-            let own = margins(plain);
-            let over = |margin: &&Margin| {
-                let same = |own: &&Margin| (own.limit, own.joint) == (margin.limit, margin.joint);
-                let plain = own.iter().find(same).map_or(0.0, |own| own.share);
-                margin.share > plain.max(1.0) + BETWEEN
-            };
-            if let Some(margin) = margins(command).iter().find(over) {
-                return Some(format!("{seed}: {how:?} every {stride}: {margin:?}"));
-            }
-        }
+    let margins = |of: &Commanded| checked(setup, &states(of).collect::<Vec<_>>(), *points_hz);
+    let own = margins(plain);
+    let over = |(how, margin): &&(Checked, Margin)| {
+        let same = |(other, own): &&(Checked, Margin)| {
+            (other, own.limit, own.joint) == (how, margin.limit, margin.joint)
+        };
+        let plain = own.iter().find(same).map_or(0.0, |(_, own)| own.share);
+        margin.share > plain.max(1.0) + BETWEEN
+    };
+    if let Some(((how, every), margin)) = margins(command).iter().find(over) {
+        return Some(format!("{seed}: {how:?} every {every}: {margin:?}"));
     }
     refused(plan, (command, *points_hz), &names).map(|rule| format!("{seed}: {rule}"))
 }

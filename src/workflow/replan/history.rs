@@ -11,6 +11,7 @@ use crate::{
     math::quantile,
     replay::{Rules, replay},
     series::{JointKind, Series, Track, bridged, moves_beside_s, moving_s},
+    units::DEGREE_RAD,
     workflow::{
         carried::{Carried, Promise, rest::PLAN_LEAD_S},
         same_plan::{
@@ -22,6 +23,9 @@ use crate::{
 /// Commands that differ by less than these shares of their corrections, and of the mean peak that is left, are the same.
 pub(super) const SAME: f64 = 0.05;
 const SAME_OF_LEFT: f64 = 0.1;
+
+/// A sample nearer to its plan, rad, lies on it.
+const ON_PLAN_RAD: f64 = 1e-3 * DEGREE_RAD;
 
 /// A machine that changed so often changes from run to run.
 const OFTEN: usize = 2;
@@ -138,10 +142,18 @@ impl History {
             let unsent = plan.tracks.iter().filter(|track| sent.track(track.name()).is_none());
             let unsent: Vec<Track> = unsent.cloned().collect();
             sent.tracks.extend(unsent);
+            let corrected = !within(&sent, plan, SAME_RAD);
+            if !corrected
+                && recording.command.as_ref().is_some_and(|command| {
+                    lies_on(&command.series, &recording.planned, [starts_s, starts_s + end_s])
+                })
+            {
+                sent = plan.clone();
+            }
             history.runs.push(PastRun {
                 log: log.clone(),
                 path: paths[place].clone(),
-                corrected: !within(&sent, plan, SAME_RAD),
+                corrected,
                 mean_peak_rad: None,
                 rms_error_rad: 0.0,
                 p95_error_rad: 0.0,
@@ -258,6 +270,17 @@ impl History {
         let left_rad = self.runs.get(run).and_then(|run| run.mean_peak_rad).unwrap_or(f64::INFINITY);
         (SAME * corrects_rad.min(self.corrected_rad(run))).min(SAME_OF_LEFT * left_rad)
     }
+}
+
+/// Whether what was sent has its samples on its plan between two instants: what it differs by between them, its interpolation makes.
+fn lies_on(sent: &Series, planned: &Series, [from_s, to_s]: [f64; 2]) -> bool {
+    planned.tracks.iter().all(|planned| {
+        let samples = sent.track(planned.name()).map(|sent| sent.t_s().iter().zip(sent.position()));
+        let within = |(t_s, _): &(&f64, &f64)| (from_s..=to_s).contains(*t_s);
+        let on =
+            |(t_s, position): (&f64, &f64)| (planned.held_at(*t_s).position - position).abs() < ON_PLAN_RAD;
+        samples.is_none_or(|samples| samples.filter(within).all(on))
+    })
 }
 
 /// Largest distance of what was sent from the plan, rad.

@@ -22,6 +22,7 @@ mod out_of_time;
 mod outcome;
 mod parts;
 mod peaks;
+mod points;
 mod predicted;
 mod retime;
 mod same_way;

@@ -20,15 +20,15 @@ pub(super) struct Subject<'a> {
     /// Its motion and when that starts, s.
     pub(super) motion: Option<(Motion, f64)>,
     pub(super) setup: Option<&'a Setup>,
-    /// Points a second of a trajectory to send: what the plan needs, where its motion is known, but no more than there are samples.
+    /// Points a second of a trajectory to send: what the plan needs, where its motion is known.
     pub(super) points_hz: f64,
 }
 
 impl<'a> Subject<'a> {
     pub(super) fn new(plan: &'a Series, motion: Option<(Motion, f64)>, setup: Option<&'a Setup>) -> Self {
         let known = motion.as_ref().zip(setup);
-        let points_hz =
-            known.map_or(POINTS_HZ[0], |((motion, _), setup)| setup.points_hz(motion).min(1.0 / STEP_S));
+        let points_hz = known
+            .map_or(POINTS_HZ[0], |((motion, starts_s), setup)| setup.points_hz_after(motion, *starts_s));
         Self { plan, motion, setup, points_hz }
     }
 

@@ -41,7 +41,7 @@ fn faults_name_element_found_and_expected() {
         ),
         (r#"name="J2""#, r#"name="J1""#, r#"<joint "J1">: found it twice"#),
         (r#"<link name="tool"/>"#, r#"<link name="base"/>"#, r#"<link "base">: found it twice"#),
-        (r#"type="revolute""#, r#"type="planar""#, r#"<joint "J1">: found the type Planar, expected rev"#),
+        (r#"type="revolute""#, r#"type="planar""#, r#"<joint "J1">: found the type planar, expected rev"#),
         (r#"xyz="0 1 0"/><limit"#, r#"xyz="0 0 0"/><limit"#, r#"<joint "J1"> <axis>: found [0.0, 0.0, 0.0]"#),
         (r#"lower="0.349066""#, r#"lower="9""#, r#"<joint "J1"> <limit>: found lower 9 and upper 1.658063"#),
         (
@@ -50,6 +50,12 @@ fn faults_name_element_found_and_expected() {
             "found lower -170 and upper 1.658063, 27 turns, expected radians: degrees times",
         ),
         (r#"mass value="55.0""#, r#"mass value="-55""#, r#"<link "link1"> <inertial>: found mass -55 kg"#),
+        (
+            r#"velocity="0.436332""#,
+            r#"velocity="-1""#,
+            r#"<joint "J1"> <limit>: found velocity -1, expected"#,
+        ),
+        (r#"mass value="55.0""#, r#"mass value="${m}""#, r#""${m}" is not a number: this is xacro"#),
         (r#"xyz="1.2 0 0""#, r#"xyz="inf 0 0""#, r#"<joint "J2"> <origin>: found xyz [inf, 0.0, 0.0]"#),
         (r#"xyz="1.2 0 0""#, r#"xyz="1.2 0""#, "cannot be read"),
         ("</robot>", "", "cannot be read"),

@@ -45,6 +45,36 @@ fn a_machine_that_has_changed_is_learnt_anew() {
     assert!((0.5..2.0).contains(&(came / promised)), "{promised} rad promised, {came} rad came");
 }
 
+/// A recorder of fewer samples than the plan has: what lies between its samples is interpolated.
+#[test]
+fn a_plan_that_was_sent_as_it_is_and_recorded_at_20_hz_is_no_correction() {
+    let folder = scratch();
+    let folder = folder.path();
+    run_line(folder, "plan task-1.toml --choose fastest --evaluations 1000 -o plan.mcap");
+    run_line(folder, "simulate plan.mcap -o recorded.mcap");
+    let table = stdout(&run_line(folder, "export recorded.mcap --csv"));
+    let names: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let kept = |k: &usize| {
+        let name = names[*k];
+        name == "time_s" || name.ends_with("_planned_rad") || name.ends_with("_measured_rad")
+    };
+    let line = |line: &str| -> String {
+        let cells = line.split(',').enumerate().filter(|(k, _)| kept(k));
+        cells.map(|(_, cell)| cell).collect::<Vec<_>>().join(",") + "\n"
+    };
+    let whole = |text: &&str| !text.split(',').enumerate().any(|(k, cell)| kept(&k) && cell.is_empty());
+    let rows = table.lines().skip(1).filter(whole).step_by(5).map(line);
+    let head = line(&table.lines().next().unwrap().replace("_planned_", "_command_"));
+    fs::write(folder.join("rows.csv"), head + &rows.collect::<String>()).unwrap();
+    run_line(folder, "import rows.csv -o rows.mcap");
+    let joined = run_line(folder, "join rows.mcap --plan plan.mcap -o run.mcap");
+    assert!(matches!(joined.status.code(), Some(0 | 3)), "{}", stderr(&joined));
+    let next = json(folder, "replan run.mcap --keep-plan -o next.mcap");
+    assert_eq!(next["runs"][0]["corrected"], false);
+    let reasons = &check(&next, "gain")["reasons"];
+    assert_eq!(reasons.to_string(), r#"["first_command"]"#);
+}
+
 /// What was begun with half of a correction ends where the whole would have: the step over a dead band is in no error.
 #[test]
 fn a_careful_first_command_is_followed_by_its_rest() {

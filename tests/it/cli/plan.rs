@@ -9,7 +9,7 @@ use std::{
 use hydrotrace::log::{ReadOptions, survey};
 use serde_json::Value;
 
-use crate::support::{command, hold_to_schema, root, stderr, stdout};
+use crate::support::{command, hold_to_schema, root, run_line, stderr, stdout};
 
 const SIMULATION: &str = "sample-logs/tasks/simulation.toml";
 const TASK_1: &str = "sample-logs/tasks/task-1.toml";
@@ -116,6 +116,49 @@ fn a_task_that_no_timing_keeps_says_what_binds_where_and_by_how_much() {
     std::fs::write(&slow, wider).unwrap();
     let kept = plan(&[slow.to_str().unwrap(), "--evaluations", "1000"], "2");
     assert_eq!(kept.status.code(), Some(0), "{}", stderr(&kept));
+}
+
+#[test]
+fn the_exported_plan_has_speeds_of_a_joint_that_stands_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let joint = |name: &str, from: &str| {
+        format!(
+            r#"<link name="{name}-link"/><joint name="{name}" type="continuous"><parent link="{from}"/><child link="{name}-link"/></joint>"#
+        )
+    };
+    let arm = format!(
+        r#"<robot name="r"><link name="base"/>{}{}</robot>"#,
+        joint("a", "base"),
+        joint("b", "a-link")
+    );
+    fs::write(folder.path().join("r.urdf"), arm).unwrap();
+    let task = "title = \"t\"\narm = \"r.urdf\"\njoints = [\"a\", \"b\"]\n[[point]]\nangles_deg = { a = 0, b = 10 }\n[[point]]\n\
+                angles_deg = { a = 50, b = 10 }\n[limits]\nspeed_deg_s = { a = 30, b = 30 }\n";
+    fs::write(folder.path().join("task.toml"), task).unwrap();
+    let made = run_line(folder.path(), "plan task.toml --choose fastest --evaluations 500 -o plan.mcap");
+    assert!(matches!(made.status.code(), Some(0 | 3)), "{}", stderr(&made));
+    let table = stdout(&run_line(folder.path(), "export plan.mcap --csv"));
+    assert!(
+        table.starts_with("stamp_ns,time_s,a_planned_rad,a_planned_rad_s,b_planned_rad,b_planned_rad_s\n"),
+        "{table:.100}"
+    );
+    assert!(table.lines().skip(1).all(|line| line.ends_with(",0")));
+}
+
+/// A plan that has the longest intervals has no more time to buy anything by.
+#[test]
+fn a_plan_of_the_longest_intervals_says_so() {
+    let said = stdout(&plan(&[TASK_1, "--choose", "smoothest", "--evaluations", "1000"], "2"));
+    let folder = tempfile::tempdir().unwrap();
+    let short = edited(folder.path(), TASK_1, "max_duration_s = 40.0", "max_duration_s = 400.0");
+    let longest =
+        stdout(&plan(&[short.to_str().unwrap(), "--choose", "smoothest", "--evaluations", "1000"], "2"));
+    assert!(said.contains("1 % more time would buy"), "{said}");
+    assert!(
+        longest.contains("All intervals have the longest duration allowed, ")
+            && !longest.contains("would buy"),
+        "{longest}"
+    );
 }
 
 #[test]

@@ -218,3 +218,61 @@ fn a_motion_that_starts_at_the_end_of_a_range_is_as_fast_as_one_that_starts_with
     let (at, within) = (of(0.0), of(-0.01));
     assert!(at < 1.02 * within, "{at} s and {within} s");
 }
+
+/// Where it stays, rounding brings it beyond the end or not.
+#[test]
+fn a_joint_that_rests_at_the_end_of_its_range_holds_nothing_up() {
+    let of = |end: f64| {
+        let points = [[0.0, end], [100.0, end], [50.0, end]];
+        planned(arm(""), task(&points, [-170.0, 170.0]), Shaping::Timing).unwrap()
+    };
+    let (at, within) = (of(-170.0), of(-169.0));
+    assert!((duration_s(&at) / duration_s(&within) - 1.0).abs() < 1e-3, "{} s", duration_s(&at));
+    let slowest_s = |found: &Planned| found.front.last().unwrap().objectives[Objective::Duration];
+    assert!((slowest_s(&at) - slowest_s(&within)).abs() < 1e-3, "{} s", slowest_s(&at));
+}
+
+#[test]
+fn intervals_are_as_long_as_the_task_has_them() {
+    let points = [[0.0, 0.0], [100.0, 170.0], [50.0, 170.0]];
+    let found = planned(arm(""), task(&points, [-170.0, 170.0]), Shaping::Timing).unwrap();
+    let all = found.front.iter().flat_map(|timing| &timing.interval_s);
+    let [least_s, most_s] = all.fold([f64::MAX, 0.0], |[a, b], s| [s.min(a), s.max(b)]);
+    assert!(least_s >= 0.3 && most_s <= 20.0, "{least_s} to {most_s} s");
+}
+
+#[test]
+fn a_free_shape_keeps_limits_that_no_times_alone_keep() {
+    let square = [[0.0, 0.0], [60.0, 0.0], [60.0, 60.0], [0.0, 60.0], [0.0, 0.0]];
+    let found = planned(arm(""), task(&square, [-0.3, 60.3]), Shaping::Free(None)).unwrap();
+    assert!(found.front.is_empty() && found.chosen.broken().is_empty());
+    assert!(found.shaped.is_some_and(|shaped| shaped.timing.is_none()));
+    // As it is, stopping at every key point.
+    assert!(found.chosen.objectives[Objective::Duration] < 17.0, "{:?}", found.chosen.objectives);
+}
+
+/// A load that is nearly one at rest: some more time makes it one that may be.
+#[test]
+fn where_longer_intervals_keep_a_load_that_is_said() {
+    let heavy = r#"<inertial><mass value="1"/><inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/></inertial>"#;
+    let within = |longest_s: f64| {
+        let task = task(&[[-10.0, 0.0], [10.0, 0.0]], [-90.0, 90.0]);
+        let task = task.replace("joints", &format!("interval_s = [0.3, {longest_s:?}]\njoints"));
+        planned(arm(heavy), task + "torque_n_m = { j1 = 4.906 }\n", Shaping::Timing)
+    };
+    let PlanFailure::Infeasible { longest_s: Some(longest_s), .. } = within(5.0).unwrap_err() else {
+        panic!()
+    };
+    assert!((5.0..50.0).contains(&longest_s), "{longest_s} s");
+    assert!(within(longest_s.ceil()).is_ok());
+}
+
+#[test]
+fn a_rod_speed_of_a_joint_without_a_cylinder_is_an_error() {
+    let task = task(&POINTS, [-90.0, 90.0]) + "rod_speed_m_s = { j2 = 0.1 }\n";
+    let PlanFailure::Setup { source: error, .. } = planned(arm(""), task, Shaping::Timing).unwrap_err()
+    else {
+        panic!()
+    };
+    assert!(error.to_string().contains("rod speed of j2 to 0.1 m/s, and no cylinder of j2"), "{error}");
+}
