@@ -23,7 +23,7 @@ pub use pieces::{Piece, Pieces, pieces};
 pub use programme::{Columns, quadratic_programme};
 pub use sin_cos::sin_cos;
 pub use statistic::{
-    SIGMA_PER_MAD, deviation, dot, mad, mean, median, quantile, quantile_sorted, range, usual_step,
+    SIGMA_PER_MAD, deviation, dot, mad, mean, median, quantile, quantile_sorted, range, rms, usual_step,
 };
 pub use step::{Step, step};
 pub use trend::{Trend, begins, false_discovery, theil_sen, trend};

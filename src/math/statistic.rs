@@ -16,6 +16,11 @@ pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
+/// Root mean square; 0 for no values.
+pub fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
 /// Root mean square distance from the mean; 0 for no values.
 pub fn deviation(values: &[f64]) -> f64 {
     let (count, mean) = (values.len().max(1) as f64, mean(values));

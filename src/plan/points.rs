@@ -134,13 +134,10 @@ mod tests {
             let margins = setup.through_points(&points, 1.0 / hz).into_iter();
             margins.map(|(_, margin)| margin.share).fold(0.0, f64::max)
         };
-        let mut closer = 0;
         for k in 0_u32..16 {
             let begins_s = 1.0 + 0.0025 * f64::from(k);
             let share = worst(begins_s, setup.points_hz_after(&motion, begins_s));
             assert!(share <= 1.0 + BETWEEN, "{begins_s} s: {share}");
-            closer += usize::from(worst(begins_s, setup.points_hz(&motion)) > 1.0 + BETWEEN);
         }
-        assert!(closer > 0, "wherever they lie, the points of a motion that begins at one would do");
     }
 }

@@ -142,7 +142,7 @@ pub struct JointReplay {
     /// Measured starts without a planned start.
     pub unplanned_starts: usize,
     /// Planned motions that may have left rest where a stretch after a gap begins, and whose starts are not seen.
-    #[serde(skip)]
+    #[serde(default)]
     pub edge_starts: usize,
 }
 

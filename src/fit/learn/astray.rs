@@ -4,10 +4,10 @@ use super::{
     super::{Fit, JointFit},
     Trial,
     answer::Answer,
-    correct::{Workspace, rms},
+    correct::Workspace,
 };
 use crate::{
-    math::{deviation, range},
+    math::{deviation, range, rms},
     series::Series,
     units::DEGREE_RAD,
 };

@@ -11,10 +11,10 @@ use super::{
         run::steps_in,
     },
     answer::{Answer, motions},
-    correct::{Workspace, largest, rms, unexplained_rad},
+    correct::{Workspace, largest, unexplained_rad},
 };
 use crate::{
-    math::{lowpass, smooth_step},
+    math::{lowpass, rms, smooth_step},
     units::DEGREE_RAD,
 };
 

@@ -9,7 +9,10 @@ use super::{
     answer::Answer,
     oscillation::Character,
 };
-use crate::{math::lowpass, units::DEGREE_RAD};
+use crate::{
+    math::{lowpass, rms},
+    units::DEGREE_RAD,
+};
 
 /// Corrections below this are none, rad.
 pub(super) const NONE_RAD: f64 = 1e-3 * DEGREE_RAD;
@@ -247,8 +250,4 @@ pub(super) fn faded(correction_rad: &mut [f64], fade: &[f64]) {
 /// Largest distance from zero.
 pub(super) fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
-}
-
-pub(super) fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }

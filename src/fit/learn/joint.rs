@@ -96,8 +96,11 @@ impl<'a> Joint<'a> {
         let chance = known.and_then(|fit| unlearnt(&mut answers, &planned, &fit.model, &mut workspace));
         // What a joint does that follows another plan, or none, is no oscillation of its loop.
         let newest = fit.zip(answers.last()).filter(|_| !astray);
-        let oscillation = newest
-            .map(|(fit, run)| Oscillation::of(&unexplained_rad(run, &fit.model.calmed(), &mut workspace)));
+        let oscillation = newest.map(|(fit, run)| {
+            let unaided = run.correction_rad(&planned).into_iter().zip(run.error_rad(&planned));
+            let unaided_rad: Vec<f64> = unaided.map(|(sent, error)| sent + error).collect();
+            Oscillation::beside(&unexplained_rad(run, &fit.model.calmed(), &mut workspace), &unaided_rad)
+        });
         Ok(Self {
             fit,
             name: track.name(),

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::model::STEP_S;
 use crate::{
-    math::{lowpass, range, whole},
+    math::{lowpass, range, rms, whole},
     series::Track,
 };
 
@@ -37,6 +37,9 @@ const PEAK_STEP_HZ: f64 = 0.02;
 
 /// Longest period that is looked for, s.
 const LONGEST_S: f64 = 3.0;
+
+/// Less than this share of what a plan is off by unaided does not ring.
+const LITTLE: f64 = 0.04;
 
 /// How a joint answers where the model has no explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -72,6 +75,14 @@ impl Oscillation {
         let steps = (0..).map(|k| from_s + f64::from(k) * STEP_S).take_while(|t_s| *t_s <= to_s);
         let error_rad = |t_s: f64| measured.held_at(t_s).position - planned.held_at(t_s).position;
         Self::of(&steps.map(error_rad).collect::<Vec<_>>())
+    }
+
+    /// Of measured less modelled angles, rad, beside what the plan would be off by unaided; what a model leaves where it
+    /// explains nearly all has some period by itself.
+    pub(super) fn beside(unexplained_rad: &[f64], unaided_rad: &[f64]) -> Self {
+        let found = Self::of(unexplained_rad);
+        let little = rms(unexplained_rad) < LITTLE * rms(unaided_rad);
+        Self { character: if little { Character::Calm } else { found.character }, ..found }
     }
 
     /// Of measured less modelled angles, rad, every [`STEP_S`].

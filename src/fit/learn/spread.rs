@@ -3,9 +3,9 @@
 use super::{
     super::{Model, model::STEP_S},
     answer::Answer,
-    correct::{NONE_RAD, Workspace, largest, rms, unexplained_rad},
+    correct::{NONE_RAD, Workspace, largest, unexplained_rad},
 };
-use crate::math::lowpass;
+use crate::math::{lowpass, rms};
 
 /// Errors are compared below this, Hz.
 const COMPARED_HZ: f64 = 1.5;

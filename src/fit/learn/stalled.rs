@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::{
-    correct::{NONE_RAD, largest, rms},
+    correct::{NONE_RAD, largest},
     spoilt::{Left, MATTERS_RAD},
 };
-use crate::units::DEGREE_RAD;
+use crate::{math::rms, units::DEGREE_RAD};
 
 /// A correction has grown that is larger by this share of it and by this, rad.
 const GREW: (f64, f64) = (0.2, 0.1 * DEGREE_RAD);

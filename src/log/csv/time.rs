@@ -185,7 +185,9 @@ impl Wraps {
             return ns;
         };
         let before_ns = std::mem::replace(&mut self.before_ns, ns);
-        if ns > before_ns {
+        if before_ns == i64::MIN {
+            // The first.
+        } else if ns > before_ns {
             self.step_ns = ns.saturating_sub(before_ns);
         } else if ns >= 0 && [ns, before_ns].iter().all(|ns| ns % unit_ns == 0) {
             let spans = [16, 32].map(|bits| unit_ns.saturating_mul(1 << bits));
@@ -244,8 +246,8 @@ mod tests {
             (ns.windows(2).all(|two| two[1] - two[0] == 10 * unit_ns), wraps.count)
         };
         assert_eq!(steps("us", 32, (1 << 32) - 555), (true, 1));
-        assert_eq!(steps("ms", 16, (1 << 16) - 5), (true, 1));
-        assert_eq!(steps("ms", 20, (1 << 20) - 5), (false, 0));
+        assert_eq!(steps("ms", 16, (1 << 16) - 55), (true, 1));
+        assert_eq!(steps("ms", 20, (1 << 20) - 55), (false, 0));
         assert_eq!(steps("s", 32, 0), (true, 0));
     }
 }

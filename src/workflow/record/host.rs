@@ -145,8 +145,8 @@ mod tests {
         for each in [1, 2, 3] {
             let ports: Vec<u16> = (0..2000).map(|_| port()).collect();
             let packets: Vec<(u16, f64)> =
-                (0..4000_u32).map(|k| (ports[k as usize / each], 0.01 * f64::from(k))).collect();
-            assert_eq!(taken(&packets[..2000]).len(), 2000, "{each}");
+                (0..2000_u32).map(|k| (ports[k as usize / each], 0.01 * f64::from(k))).collect();
+            assert_eq!(taken(&packets).len(), 2000, "{each}");
         }
     }
 }
