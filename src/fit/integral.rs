@@ -4,7 +4,7 @@
 
 use super::{
     estimate::{Estimate, Problem, Workspace},
-    parameters::{DEAD_BAND, INTEGRAL_GAIN, INTEGRAL_LIMIT, Shown},
+    parameters::{DEAD_BAND, INTEGRAL_GAIN, INTEGRAL_LIMIT, Integral, Shown},
 };
 use crate::units::DEGREE_RAD;
 
@@ -14,7 +14,7 @@ const ROUNDS: usize = 20;
 /// The estimate without an integral, if it costs less: then the data do not show one.
 pub(super) fn without(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Option<Estimate> {
     let mut other = problem.clone();
-    other.shown.integral = false;
+    other.shown.integral = Integral::None;
     let before = problem.cost_at(&found.x, found.scale_rad, workspace);
     let mut x = found.x.clone();
     // The dead band starts anew: it has held the integral off.
@@ -44,7 +44,7 @@ pub(super) fn limited(
     let mut best: Option<(f64, Estimate, Shown)> = None;
     for feed_forward in [true, false] {
         let mut other = problem.clone();
-        other.shown = Shown { integral: true, integral_limit: true, feed_forward, ..problem.shown };
+        other.shown = Shown { integral: Integral::Held, feed_forward, ..problem.shown };
         let starts = STARTS.map(|[gain_1_s2, limit_rad_s]| {
             let mut x = found.x.clone();
             x[INTEGRAL_GAIN] = place(INTEGRAL_GAIN, gain_1_s2);
@@ -53,7 +53,13 @@ pub(super) fn limited(
         });
         let with = other.search(starts, workspace);
         let cost = other.cost_at(&with.x, found.scale_rad, workspace);
-        if before - cost > GAIN && best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+        if before - cost <= GAIN {
+            continue;
+        }
+        // What the descent gains without it is none of its own.
+        let without = problem.descend(with.x.clone(), 2 * ROUNDS, workspace);
+        let gained = problem.cost_at(&without.x, found.scale_rad, workspace) - cost;
+        if gained > GAIN && best.as_ref().is_none_or(|(least, ..)| cost < *least) {
             best = Some((cost, with, other.shown));
         }
     }

@@ -11,7 +11,7 @@ use super::{
     interval::{Knowledge, discrepancy},
     model::Model,
     outcome::JointFit,
-    parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, LIMITS, Priors, SHARED, Shown, Valve},
+    parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, Integral, LIMITS, Priors, SHARED, Shown, Valve},
     run::{Run, Sample},
     set_values::SetValues,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
@@ -73,8 +73,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
             valve: Valve::default(),
             late: false,
             swing: false,
-            integral: true,
-            integral_limit: false,
+            integral: Integral::Free,
             feed_forward: true,
         },
         part: Part::All,
@@ -102,6 +101,10 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         problem.shown.valve.beyond = true;
         found = beyond;
     }
+    if let Some(without) = integral::without(&problem, &found, &mut workspace) {
+        problem.shown.integral = Integral::None;
+        found = without;
+    }
     if let Some((limited, shown)) = integral::limited(&problem, &found, &mut workspace) {
         problem.shown = shown;
         found = limited;
@@ -109,10 +112,6 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     if let Some(swinging) = swing::swinging(&problem, &found, &mut workspace) {
         problem.shown.swing = true;
         found = swinging;
-    }
-    if let Some(without) = integral::without(&problem, &found, &mut workspace) {
-        problem.shown.integral = false;
-        found = without;
     }
     if let Some(edged) = edge(&problem, &found, &mut workspace) {
         problem.shown.valve.edge = true;
@@ -261,7 +260,7 @@ fn report(
     let mut integral = one(INTEGRAL_GAIN, model.integral_gain_1_s2, integral_gain);
     // One that acts more slowly than runs last cannot be told from none.
     integral.identified &= model.position_gain_1_s < SLOWEST_INTEGRAL_S * model.integral_gain_1_s2;
-    if !problem.shown.integral {
+    if problem.shown.integral == Integral::None {
         integral = Estimated { value: Some(0.0), ..Estimated::default() };
     }
     let [dead_band_rad_s, dead_band_error_rad] = knowledge.dead_band(problem, &found.x);

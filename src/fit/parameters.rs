@@ -92,6 +92,15 @@ pub(super) struct Valve {
     pub(super) beyond: bool,
 }
 
+/// Integral action of a position loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Integral {
+    None,
+    Free,
+    /// Within limits.
+    Held,
+}
+
 /// Parts that a model has only where the data show them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Shown {
@@ -104,9 +113,7 @@ pub(super) struct Shown {
     /// Set values that come late, by a filter and a delay.
     pub(super) late: bool,
     /// Integral action of the position loop.
-    pub(super) integral: bool,
-    /// That it is held within limits.
-    pub(super) integral_limit: bool,
+    pub(super) integral: Integral,
     /// Speed that is fed forward.
     pub(super) feed_forward: bool,
 }
@@ -118,9 +125,9 @@ impl Shown {
             EDGE => self.valve.edge,
             FILTER | SET_VALUE_DELAY => self.late,
             BEYOND => self.valve.beyond,
-            INTEGRAL_GAIN => self.integral,
+            INTEGRAL_GAIN => self.integral != Integral::None,
             FREQUENCY | DAMPING => self.swing,
-            INTEGRAL_LIMIT => self.integral && self.integral_limit,
+            INTEGRAL_LIMIT => self.integral == Integral::Held,
             FEED_FORWARD => self.feed_forward,
             LIMITS.. => self.limits.get(parameter - LIMITS).is_none_or(|shown| *shown),
             _ => true,
@@ -161,7 +168,7 @@ impl Priors {
             dead_time_s: value(DEAD_TIME),
             time_constant_s: value(TIME_CONSTANT),
             position_gain_1_s: value(POSITION_GAIN),
-            integral_gain_1_s2: if shown.integral { value(INTEGRAL_GAIN) } else { 0.0 },
+            integral_gain_1_s2: if shown.has(INTEGRAL_GAIN) { value(INTEGRAL_GAIN) } else { 0.0 },
             integral_limit_rad_s: shown.has(INTEGRAL_LIMIT).then(|| value(INTEGRAL_LIMIT)),
             feed_forward: if shown.feed_forward { value(FEED_FORWARD) } else { 0.0 },
             asymmetry: value(ASYMMETRY),

@@ -1,6 +1,8 @@
 //! Whether a joint swings between valve and sensor, on its oil or its link: what it does then is behind what is asked by more the
 //! faster that changes, which late set values would stand in for.
 
+use std::ops::Range;
+
 use super::{
     estimate::{Estimate, Problem, Workspace},
     parameters::{DAMPING, DEAD_TIME, FREQUENCY, TIME_CONSTANT},
@@ -9,8 +11,15 @@ use super::{
 /// The cost, a logarithm of likelihood, must fall by this.
 const GAIN: f64 = 12.0;
 
-/// A joint with more damping is behind, and does not swing.
-const MOST_DAMPING: f64 = 0.9;
+/// A joint with more damping is behind, and does not swing; one with less oscillates by itself, and would be explained by any start.
+const DAMPING_RATIO: Range<f64> = 0.1..0.9;
+
+/// Share of the largest position gain with which the loop of a joint that swings is stable, 2 * damping ratio * natural frequency: one of
+/// more oscillates by itself, and explains any oscillation.
+const STABLE: f64 = 0.9;
+
+/// Rounds of the descent without a swing.
+const ROUNDS: usize = 38;
 
 /// Natural frequencies, rad/s, where descents start, with this damping, dead time and time constant, s.
 const STARTS_RAD_S: [f64; 3] = [6.0, 12.0, 24.0];
@@ -36,6 +45,15 @@ pub(super) fn swinging(problem: &Problem, found: &Estimate, workspace: &mut Work
     });
     let before = problem.cost_at(&found.x, found.scale_rad, workspace);
     let with = other.search(starts, workspace);
+    if before - other.cost_at(&with.x, found.scale_rad, workspace) <= GAIN {
+        return None;
+    }
+    // What the descent gains without it is none of its own.
+    let without = problem.descend(with.x.clone(), ROUNDS, workspace);
+    let before = before.min(problem.cost_at(&without.x, found.scale_rad, workspace));
     let gained = before - other.cost_at(&with.x, found.scale_rad, workspace);
-    (gained > GAIN && other.model(&with.x).damping_ratio < MOST_DAMPING).then_some(with)
+    let model = other.model(&with.x);
+    let most_1_s = 2.0 * model.damping_ratio * model.natural_frequency_rad_s;
+    let stable = DAMPING_RATIO.contains(&model.damping_ratio) && model.position_gain_1_s < STABLE * most_1_s;
+    (gained > GAIN && stable).then_some(with)
 }

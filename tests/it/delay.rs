@@ -155,9 +155,9 @@ fn a_plan_that_is_written_once_it_changed_by_a_band_left_before_its_first_value(
         let changes: Vec<usize> =
             (1..written.len()).filter(|k| written[*k].to_bits() != written[k - 1].to_bits()).collect();
         for two in changes.windows(2).filter(|two| two[1] - two[0] < 20) {
-            for at in two[0]..two[1] {
+            for (at, planned) in planned.iter_mut().enumerate().take(two[1]).skip(two[0]) {
                 let share = (at - two[0]) as f64 / (two[1] - two[0]) as f64;
-                planned[at] = written[two[0]] + share * (written[two[1]] - written[two[0]]);
+                *planned = written[two[0]] + share * (written[two[1]] - written[two[0]]);
             }
         }
         let measured = t_s.iter().map(|t| course(t - 0.15)).collect();

@@ -107,7 +107,9 @@ pub(super) fn read(
         remarks.add(Code::NotClosed, 1, message);
     }
     let mut wraps = Wraps::default();
-    stamp_ns.iter_mut().for_each(|ns| *ns = wraps.undone(time, *ns));
+    for ns in &mut stamp_ns {
+        *ns = wraps.undone(time, *ns);
+    }
     wraps.remark(remarks);
     let of_day = time.is_of_day();
     let repeats =

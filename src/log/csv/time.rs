@@ -163,14 +163,15 @@ impl TimeSource {
 #[derive(Debug, Clone)]
 pub(super) struct Wraps {
     before_ns: i64,
-    step_ns: i64,
+    /// The last two; a stamp that lies makes one of them large.
+    steps_ns: [i64; 2],
     added_ns: i64,
     count: u64,
 }
 
 impl Default for Wraps {
     fn default() -> Self {
-        Self { before_ns: i64::MIN, step_ns: 0, added_ns: 0, count: 0 }
+        Self { before_ns: i64::MIN, steps_ns: [0; 2], added_ns: 0, count: 0 }
     }
 }
 
@@ -188,12 +189,14 @@ impl Wraps {
         if before_ns == i64::MIN {
             // The first.
         } else if ns > before_ns {
-            self.step_ns = ns.saturating_sub(before_ns);
+            self.steps_ns = [ns.saturating_sub(before_ns), self.steps_ns[0]];
         } else if ns >= 0 && [ns, before_ns].iter().all(|ns| ns % unit_ns == 0) {
             let spans = [16, 32].map(|bits| unit_ns.saturating_mul(1 << bits));
             let goes_on = |span: &&i64| {
                 let on_ns = ns.saturating_add(**span).saturating_sub(before_ns);
-                before_ns < **span && (1..=Self::STEPS.saturating_mul(self.step_ns)).contains(&on_ns)
+                before_ns < **span
+                    && (1..=Self::STEPS.saturating_mul(self.steps_ns[0].min(self.steps_ns[1])))
+                        .contains(&on_ns)
             };
             if let Some(span) = spans.iter().find(goes_on) {
                 self.added_ns = self.added_ns.saturating_add(*span);

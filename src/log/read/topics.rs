@@ -188,7 +188,7 @@ pub(super) fn missing(
         None if flag.contains(' ') => (present(extracted), format!("{flag} TOPIC[:FIELD]")),
         None => {
             let own = format!("; or, if they are in a log of their own, {}", in_another(&extracted.path));
-            let number = extracted.topics.iter().find_map(|topic| of_one_number(topic));
+            let number = extracted.topics.iter().find_map(of_one_number);
             let topic = number.map_or_else(|| "TOPIC[:FIELD]".to_owned(), |how| format!("TOPIC:data, {how}"));
             (present(extracted), format!("{flag} {topic}{own}"))
         }

@@ -57,8 +57,8 @@ fn mended(task: &Task, joints: &[String], margin: &Margin, nearest: &PlanEvaluat
         let own = task.joints.iter().position(|joint| joint == name)?;
         Some((name, *end.velocity_rad_s.get(own)?)).filter(|(_, speed)| speed.abs() > 0.0)
     };
-    let moves = ends.into_iter().filter(|(end, point, _)| end == point);
-    let moves = moves.filter_map(|(_, point, end)| Some((point, speed(end)?))).next();
+    let mut moves = ends.into_iter().filter(|(end, point, _)| end == point);
+    let moves = moves.find_map(|(_, point, end)| Some((point, speed(end)?)));
     match (margin.limit, moves) {
         (Limit::Position, Some((point, (name, speed)))) => Some(format!(
             "{name} moves at key point {point} at {}/s, and to stop from that speed, or to come to it, takes more room than its range \

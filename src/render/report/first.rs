@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use maud::{Markup, html};
 
 use crate::{
+    math::whole,
     render::{
         kit::{
             clean, counted, ms,
@@ -168,7 +169,7 @@ fn outline(pair: &Pair, most: f64, place: impl Fn(f64) -> f64) -> String {
             continue;
         }
         let mut drawn = String::new();
-        for column in segment.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
+        for column in segment.chunk_by(|a, b| whole(a.0) == whole(b.0)) {
             let high = y(column.iter().map(|at| at.1).fold(0.0, f64::max));
             if drawn.is_empty() {
                 let _ = write!(path, "M{:.0} {high}", column[0].0.floor());

@@ -103,7 +103,7 @@ pub(super) fn of<'a>(report: &'a Report, id: &str) -> Option<&'a LateStart> {
 fn tells_apart(start: &LateStart) -> bool {
     let (dead_band, lag) = (&start.dead_band, &start.lag);
     let negative = dead_band.delay_s.min(lag.delay_s) < 0.0;
-    !negative && !(is_unsure(dead_band) && is_unsure(lag))
+    !(negative || is_unsure(dead_band) && is_unsure(lag))
 }
 
 /// Starts in the order of their rows.

@@ -60,7 +60,9 @@ impl Host {
             self.refused += waiting.len() as u64;
             self.beside.extend(waiting.iter().map(|(port, _)| *port));
         } else {
-            waiting.iter().for_each(|(port, packet)| self.listen(*port, packet, &mut lines));
+            for (port, packet) in &waiting {
+                self.listen(*port, packet, &mut lines);
+            }
         }
         self.listen(port, packet, &mut lines);
         (self.port, self.heard_s) = (Some(port), at_s);

@@ -256,7 +256,7 @@ fn a_table_that_lacks_a_unit_gets_a_command_that_reads_it() {
     let errors = rows("t,B_pos,B_err,A_pos,A_err", ",", seconds, |q| format!("{:.5}", q.to_radians()));
     fs::write(folder.path().join("d.csv"), errors).unwrap();
     let (_, text, error) = said(&hydrotrace(folder.path(), &["import", "d.csv", "-o", "d.mcap"]));
-    assert!(text.contains("say --planned B=measured+err,A=measured+err if the error"), "{text}{error}");
+    assert!(text.contains("say --planned B=measured+error,A=measured+error if the error"), "{text}{error}");
 }
 
 /// The run as `ros2 topic echo` and `rostopic echo` print the state of a controller: lists a line a number, or in brackets.

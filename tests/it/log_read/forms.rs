@@ -288,7 +288,7 @@ fn joints_that_slide_are_named_by_option_or_by_an_imported_table() {
         (units(&found.planned)[0], found.remarks.as_slice().iter().find(doubt).map(|one| one.message.clone()))
     };
     let (unit, doubt) = said(&[]);
-    assert!(unit == "rad" && doubt.is_some_and(|doubt| doubt.contains("say --slides boom_cylinder")));
+    assert!(unit == "rad" && doubt.is_some_and(|doubt| doubt.contains("--slides boom_cylinder=mm")));
     let mm = hydrotrace::log::LengthUnit::Millimetres;
     assert_eq!(said(&[("boom_cylinder", mm)]), ("m", None));
     assert!(said(&[("boom_cylinder", mm), ("bucket", mm)]).1.is_some_and(|doubt| doubt.contains("bucket")));
