@@ -18,7 +18,7 @@ const DIFFERENCE: f64 = 1e-3;
 const FINEST_RAD: f64 = 0.002 * DEGREE_RAD;
 
 /// Share of the squared tracking error below which what is left is of no part of the model.
-const EXPLAINED: f64 = 2e-4;
+const EXPLAINED: f64 = 3e-4;
 
 /// A round that gains less than this in the cost, a logarithm of likelihood, is one of the last.
 const GAIN: f64 = 0.02;
