@@ -22,12 +22,7 @@ pub(super) fn beyond(problem: &Problem, found: &Estimate, workspace: &mut Worksp
     }
     let mut opened = problem.clone();
     opened.shown.valve.beyond = true;
-    let before = problem.cost_at(&found.x, found.scale_rad, workspace);
     let with = opened.descend(found.x.clone(), ROUNDS, workspace);
-    // What the descent gains without it is none of its own.
-    let without = problem.descend(with.x.clone(), ROUNDS, workspace);
-    let before = before.min(problem.cost_at(&without.x, found.scale_rad, workspace));
-    let gained = before - opened.cost_at(&with.x, found.scale_rad, workspace);
     let share = problem.priors.of(BEYOND).value(with.x[BEYOND]);
-    (gained > GAIN && share > LEAST).then_some(with)
+    (share > LEAST && problem.gained(&opened, &with, found, workspace) > GAIN).then_some(with)
 }

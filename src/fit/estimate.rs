@@ -20,6 +20,9 @@ const FINEST_RAD: f64 = 0.002 * DEGREE_RAD;
 /// Share of the squared tracking error below which what is left is of no part of the model.
 const EXPLAINED: f64 = 3e-4;
 
+/// Rounds of a descent without a part that was tried.
+const ROUNDS_WITHOUT: usize = 38;
+
 /// A round that gains less than this in the cost, a logarithm of likelihood, is one of the last.
 const GAIN: f64 = 0.02;
 
@@ -130,6 +133,20 @@ impl Problem<'_> {
         let mut residuals = Vec::new();
         self.residuals(x, workspace, &mut residuals);
         inefficiency(&residuals)
+    }
+
+    /// How much less `with`, an estimate of a problem with one part more, costs than an estimate of this one: `found`, or what a descent
+    /// from there without the part comes to, for what a descent gains is not the part's own.
+    pub(super) fn gained(
+        &self,
+        more: &Self,
+        with: &Estimate,
+        found: &Estimate,
+        workspace: &mut Workspace,
+    ) -> f64 {
+        let without = self.descend(with.x.clone(), ROUNDS_WITHOUT, workspace);
+        let before = [found, &without].map(|one| self.cost_at(&one.x, found.scale_rad, workspace));
+        before[0].min(before[1]) - more.cost_at(&with.x, found.scale_rad, workspace)
     }
 
     /// Whether hardly anything is left that another part of the model could explain.

@@ -40,7 +40,6 @@ pub(super) fn limited(
         return None;
     }
     let place = |i: usize, value: f64| problem.priors.of(i).place(value);
-    let before = problem.cost_at(&found.x, found.scale_rad, workspace);
     let mut best: Option<(f64, Estimate, Shown)> = None;
     for feed_forward in [true, false] {
         let mut other = problem.clone();
@@ -53,13 +52,9 @@ pub(super) fn limited(
         });
         let with = other.search(starts, workspace);
         let cost = other.cost_at(&with.x, found.scale_rad, workspace);
-        if before - cost <= GAIN {
-            continue;
-        }
-        // What the descent gains without it is none of its own.
-        let without = problem.descend(with.x.clone(), 2 * ROUNDS, workspace);
-        let gained = problem.cost_at(&without.x, found.scale_rad, workspace) - cost;
-        if gained > GAIN && best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+        if best.as_ref().is_none_or(|(least, ..)| cost < *least)
+            && problem.gained(&other, &with, found, workspace) > GAIN
+        {
             best = Some((cost, with, other.shown));
         }
     }

@@ -18,9 +18,6 @@ const DAMPING_RATIO: Range<f64> = 0.1..0.9;
 /// more oscillates by itself, and explains any oscillation.
 const STABLE: f64 = 0.9;
 
-/// Rounds of the descent without a swing.
-const ROUNDS: usize = 38;
-
 /// Natural frequencies, rad/s, where descents start, with this damping, dead time and time constant, s.
 const STARTS_RAD_S: [f64; 3] = [6.0, 12.0, 24.0];
 const DAMPED: f64 = 0.3;
@@ -43,17 +40,9 @@ pub(super) fn swinging(problem: &Problem, found: &Estimate, workspace: &mut Work
         x[TIME_CONSTANT] = place(TIME_CONSTANT, TIME_CONSTANT_S);
         x
     });
-    let before = problem.cost_at(&found.x, found.scale_rad, workspace);
     let with = other.search(starts, workspace);
-    if before - other.cost_at(&with.x, found.scale_rad, workspace) <= GAIN {
-        return None;
-    }
-    // What the descent gains without it is none of its own.
-    let without = problem.descend(with.x.clone(), ROUNDS, workspace);
-    let before = before.min(problem.cost_at(&without.x, found.scale_rad, workspace));
-    let gained = before - other.cost_at(&with.x, found.scale_rad, workspace);
     let model = other.model(&with.x);
     let most_1_s = 2.0 * model.damping_ratio * model.natural_frequency_rad_s;
     let stable = DAMPING_RATIO.contains(&model.damping_ratio) && model.position_gain_1_s < STABLE * most_1_s;
-    (gained > GAIN && stable).then_some(with)
+    (stable && problem.gained(&other, &with, found, workspace) > GAIN).then_some(with)
 }

@@ -186,9 +186,7 @@ impl Wraps {
             return ns;
         };
         let before_ns = std::mem::replace(&mut self.before_ns, ns);
-        if before_ns == i64::MIN {
-            // The first.
-        } else if ns > before_ns {
+        if ns > before_ns {
             self.steps_ns = [ns.saturating_sub(before_ns), self.steps_ns[0]];
         } else if ns >= 0 && [ns, before_ns].iter().all(|ns| ns % unit_ns == 0) {
             let spans = [16, 32].map(|bits| unit_ns.saturating_mul(1 << bits));

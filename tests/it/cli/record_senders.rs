@@ -1,6 +1,14 @@
 //! `record` of what comes in pieces: a joint a line, words before numbers, several senders.
 
-use std::{fs, io::Write, net::UdpSocket, thread::sleep, time::Duration};
+use std::{
+    fs,
+    io::Write,
+    net::{SocketAddr, UdpSocket},
+    path::Path,
+    process::Child,
+    thread::sleep,
+    time::Duration,
+};
 
 use super::{
     csv::{moves, report, trace},
@@ -24,6 +32,14 @@ fn named(joint: &str, t_s: f64, [planned, measured]: [f64; 2]) -> String {
 
 fn in_keys(joint: &str, t_s: f64, [planned, measured]: [f64; 2]) -> String {
     format!("{{\"t\": {t_s}, \"{joint}_set_deg\": {planned}, \"{joint}_act_deg\": {measured}}}\n")
+}
+
+/// A recorder that listens for six seconds, and where.
+fn listening(folder: &Path) -> (SocketAddr, Child) {
+    let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let recorder = start(folder, &["--udp", &free.to_string(), "--seconds", "6"]);
+    sleep(Duration::from_secs(2));
+    (free, recorder)
 }
 
 #[test]
@@ -61,9 +77,7 @@ fn words_before_the_first_numbers_are_told_and_end_nothing() {
 #[test]
 fn a_second_sender_is_told_and_not_mixed_in() {
     let folder = tempfile::tempdir().unwrap();
-    let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-    let recorder = start(folder.path(), &["--udp", &free.to_string(), "--seconds", "6"]);
-    sleep(Duration::from_secs(2));
+    let (free, recorder) = listening(folder.path());
     let [one, other, beside] =
         ["127.0.0.1:0", "127.0.0.2:0", "127.0.0.1:0"].map(|from| UdpSocket::bind(from).unwrap());
     let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
@@ -86,9 +100,7 @@ fn a_second_sender_is_told_and_not_mixed_in() {
 #[test]
 fn packets_of_nobody_and_packets_that_end_within_a_row_lose_none() {
     let folder = tempfile::tempdir().unwrap();
-    let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-    let recorder = start(folder.path(), &["--udp", &free.to_string(), "--seconds", "6"]);
-    sleep(Duration::from_secs(2));
+    let (free, recorder) = listening(folder.path());
     let [one, other] = ["127.0.0.1:0", "127.0.0.2:0"].map(|from| UdpSocket::bind(from).unwrap());
     let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
     for noise in [&b""[..], b"hello\n", b"{\"temp\": 20}"] {
@@ -108,9 +120,7 @@ fn packets_of_nobody_and_packets_that_end_within_a_row_lose_none() {
 #[test]
 fn a_port_for_each_packet_loses_none() {
     let folder = tempfile::tempdir().unwrap();
-    let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-    let recorder = start(folder.path(), &["--udp", &free.to_string(), "--seconds", "6"]);
-    sleep(Duration::from_secs(2));
+    let (free, recorder) = listening(folder.path());
     let text = trace("t_s,boom_set_mm,boom_act_mm", 1.0, ",", 1000.0);
     for line in text.lines() {
         let one = UdpSocket::bind("127.0.0.1:0").unwrap();

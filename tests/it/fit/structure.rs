@@ -16,18 +16,24 @@ fn joint_of(model: &Model, plan: &Series, seed: u64) -> JointFit {
 #[test]
 fn a_joint_that_swings_on_its_oil_is_told_from_set_values_that_come_late() {
     let plan = trial(&["J"]);
-    let (seed, frequency_rad_s, damping_ratio) = (1, 9.0, 0.4);
-    let swings = Model { natural_frequency_rad_s: frequency_rad_s, damping_ratio, ..QUICK };
-    let plain = joint_of(&QUICK, &plan, seed);
-    assert!(plain.model.natural_frequency_rad_s <= 0.0, "{seed}: {plain:?}");
-    let found = joint_of(&swings, &plan, seed);
-    let ratio = found.model.natural_frequency_rad_s / frequency_rad_s;
-    assert!(found.model_holds && ratio.ln().abs() < 0.15, "{seed}: {found:?}");
-    assert!((found.model.damping_ratio / damping_ratio).ln().abs() < 0.3, "{seed}: {found:?}");
-    assert!(found.set_values_late_s.value.unwrap() <= 0.0, "{seed}: {found:?}");
-    assert!((found.lag_s.value.unwrap() / swings.lag_s()).ln().abs() < 0.1, "{seed}: {found:?}");
-    let gain = found.position_gain_1_s.value.unwrap() / QUICK.position_gain_1_s;
-    assert!(gain.ln().abs() < 0.1, "{seed}: {found:?}");
+    // The last acts as a lag of its length: which of the two it is shows no more.
+    for (seed, frequency_rad_s, damping_ratio, shows) in
+        [(1, 9.0, 0.4, true), (3, 12.0, 0.2, true), (4, 10.0, 0.3, true), (2, 14.0, 0.5, false)]
+    {
+        let swings = Model { natural_frequency_rad_s: frequency_rad_s, damping_ratio, ..QUICK };
+        let plain = joint_of(&QUICK, &plan, seed);
+        assert!(!plain.model.swings(), "{seed}: {plain:?}");
+        let found = joint_of(&swings, &plan, seed);
+        assert_eq!(found.model.swings(), shows, "{seed}: {found:?}");
+        let ratio = found.model.natural_frequency_rad_s / frequency_rad_s;
+        assert!(!shows || ratio.ln().abs() < 0.15, "{seed}: {found:?}");
+        let ratio = found.model.damping_ratio / damping_ratio;
+        assert!(!shows || ratio.ln().abs() < 0.3, "{seed}: {found:?}");
+        assert!(found.model_holds && found.set_values_late_s.value.unwrap() <= 0.0, "{seed}: {found:?}");
+        assert!((found.lag_s.value.unwrap() / swings.lag_s()).ln().abs() < 0.1, "{seed}: {found:?}");
+        let gain = found.position_gain_1_s.value.unwrap() / QUICK.position_gain_1_s;
+        assert!(gain.ln().abs() < 0.1, "{seed}: {found:?}");
+    }
 }
 
 #[test]
