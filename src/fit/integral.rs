@@ -36,9 +36,6 @@ pub(super) fn limited(
     found: &Estimate,
     workspace: &mut Workspace,
 ) -> Option<(Estimate, Shown)> {
-    if problem.explains(&found.x, workspace) {
-        return None;
-    }
     let place = |i: usize, value: f64| problem.priors.of(i).place(value);
     let mut best: Option<(f64, Estimate, Shown)> = None;
     for feed_forward in [true, false] {

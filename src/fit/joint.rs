@@ -7,7 +7,6 @@ use super::{
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
     feed_forward::FeedForward,
-    integral,
     interval::{Knowledge, discrepancy},
     model::Model,
     outcome::JointFit,
@@ -15,7 +14,7 @@ use super::{
     run::{Run, Sample},
     set_values::SetValues,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
-    swing,
+    structure::structured,
     telling::{of, telling},
 };
 use crate::{
@@ -101,18 +100,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         problem.shown.valve.beyond = true;
         found = beyond;
     }
-    if let Some(without) = integral::without(&problem, &found, &mut workspace) {
-        problem.shown.integral = Integral::None;
-        found = without;
-    }
-    if let Some((limited, shown)) = integral::limited(&problem, &found, &mut workspace) {
-        problem.shown = shown;
-        found = limited;
-    }
-    if let Some(swinging) = swing::swinging(&problem, &found, &mut workspace) {
-        problem.shown.swing = true;
-        found = swinging;
-    }
+    found = structured(&mut problem, found, &mut workspace);
     if let Some(edged) = edge(&problem, &found, &mut workspace) {
         problem.shown.valve.edge = true;
         found = edged;

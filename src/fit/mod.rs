@@ -38,6 +38,7 @@ mod shared;
 mod simulate;
 mod skill;
 mod start_error;
+mod structure;
 mod swing;
 mod telling;
 mod valve;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::{
     estimate::{Estimate, Problem, Workspace},
-    parameters::{DAMPING, DEAD_TIME, FREQUENCY, TIME_CONSTANT},
+    parameters::{DAMPING, DEAD_TIME, FREQUENCY, Shown, TIME_CONSTANT},
 };
 
 /// The cost, a logarithm of likelihood, must fall by this: of models of another form a swing explains a little by chance.
@@ -25,10 +25,11 @@ const DEAD_TIME_S: f64 = 0.06;
 const TIME_CONSTANT_S: f64 = 0.03;
 
 /// The estimate of a joint that swings, if the data show it.
-pub(super) fn swinging(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Option<Estimate> {
-    if problem.explains(&found.x, workspace) {
-        return None;
-    }
+pub(super) fn swinging(
+    problem: &Problem,
+    found: &Estimate,
+    workspace: &mut Workspace,
+) -> Option<(Estimate, Shown)> {
     let mut other = problem.clone();
     other.shown.swing = true;
     let place = |i: usize, value: f64| problem.priors.of(i).place(value);
@@ -44,5 +45,5 @@ pub(super) fn swinging(problem: &Problem, found: &Estimate, workspace: &mut Work
     let model = other.model(&with.x);
     let most_1_s = 2.0 * model.damping_ratio * model.natural_frequency_rad_s;
     let stable = DAMPING_RATIO.contains(&model.damping_ratio) && model.position_gain_1_s < STABLE * most_1_s;
-    (stable && problem.gained(&other, &with, found, workspace) > GAIN).then_some(with)
+    (stable && problem.gained(&other, &with, found, workspace) > GAIN).then_some((with, other.shown))
 }
