@@ -3,7 +3,7 @@
 
 use super::{
     estimate::{Estimate, Problem, Workspace},
-    parameters::BEYOND,
+    parameters::{BEYOND, Shown},
 };
 
 /// The cost, a logarithm of likelihood, must fall by this.
@@ -16,13 +16,17 @@ const LEAST: f64 = 0.1;
 const ROUNDS: usize = 38;
 
 /// The estimate with such a valve, if the data show one.
-pub(super) fn beyond(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> Option<Estimate> {
-    if problem.shown.limits[..2] == [false; 2] {
+pub(super) fn beyond(
+    problem: &Problem,
+    found: &Estimate,
+    workspace: &mut Workspace,
+) -> Option<(Estimate, Shown)> {
+    if problem.shown.valve.beyond || problem.shown.limits[..2] == [false; 2] {
         return None;
     }
     let mut opened = problem.clone();
     opened.shown.valve.beyond = true;
     let with = opened.descend(found.x.clone(), ROUNDS, workspace);
     let share = problem.priors.of(BEYOND).value(with.x[BEYOND]);
-    (share > LEAST && problem.gained(&opened, &with, found, workspace) > GAIN).then_some(with)
+    (share > LEAST && problem.gains(GAIN, &opened, &with, found, workspace)).then_some((with, opened.shown))
 }

@@ -135,18 +135,21 @@ impl Problem<'_> {
         inefficiency(&residuals)
     }
 
-    /// How much less `with`, an estimate of a problem with one part more, costs than an estimate of this one: `found`, or what a descent
-    /// from there without the part comes to, for what a descent gains is not the part's own.
-    pub(super) fn gained(
+    /// Whether `with`, an estimate of a problem with one part more, costs less by more than `least` than an estimate of this one: `found`,
+    /// and what a descent from there without the part comes to, for what a descent gains is not the part's own.
+    pub(super) fn gains(
         &self,
+        least: f64,
         more: &Self,
         with: &Estimate,
         found: &Estimate,
         workspace: &mut Workspace,
-    ) -> f64 {
-        let without = self.descend(with.x.clone(), ROUNDS_WITHOUT, workspace);
-        let before = [found, &without].map(|one| self.cost_at(&one.x, found.scale_rad, workspace));
-        before[0].min(before[1]) - more.cost_at(&with.x, found.scale_rad, workspace)
+    ) -> bool {
+        let most = more.cost_at(&with.x, found.scale_rad, workspace) + least;
+        self.cost_at(&found.x, found.scale_rad, workspace) > most && {
+            let without = self.descend(with.x.clone(), ROUNDS_WITHOUT, workspace);
+            self.cost_at(&without.x, found.scale_rad, workspace) > most
+        }
     }
 
     /// Whether hardly anything is left that another part of the model could explain.

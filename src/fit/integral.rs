@@ -36,6 +36,9 @@ pub(super) fn limited(
     found: &Estimate,
     workspace: &mut Workspace,
 ) -> Option<(Estimate, Shown)> {
+    if problem.shown.integral == Integral::Held {
+        return None;
+    }
     let place = |i: usize, value: f64| problem.priors.of(i).place(value);
     let mut best: Option<(f64, Estimate, Shown)> = None;
     for feed_forward in [true, false] {
@@ -50,7 +53,7 @@ pub(super) fn limited(
         let with = other.search(starts, workspace);
         let cost = other.cost_at(&with.x, found.scale_rad, workspace);
         if best.as_ref().is_none_or(|(least, ..)| cost < *least)
-            && problem.gained(&other, &with, found, workspace) > GAIN
+            && problem.gains(GAIN, &other, &with, found, workspace)
         {
             best = Some((cost, with, other.shown));
         }

@@ -2,7 +2,6 @@
 
 use super::{
     Character, Estimated, HeldOut, Oscillation,
-    beyond::beyond,
     censor::{ASKED, seen, sustained},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
@@ -95,10 +94,6 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         }
         problem.shown.limits = seen;
         found = problem.descend(found.x, 30, &mut workspace);
-    }
-    if let Some(beyond) = beyond(&problem, &found, &mut workspace) {
-        problem.shown.valve.beyond = true;
-        found = beyond;
     }
     found = structured(&mut problem, found, &mut workspace);
     if let Some(edged) = edge(&problem, &found, &mut workspace) {

@@ -1,7 +1,8 @@
-//! What beside a valve, a lag and a loop the data show. One part stands in for another that is not there yet, so that which explains
+//! What beside a dead band, a lag and a loop the data show. One part stands in for another that is not there yet, so that which explains
 //! more comes first.
 
 use super::{
+    beyond::beyond,
     estimate::{Estimate, Problem, Workspace},
     integral::{limited, without},
     parameters::Integral,
@@ -11,15 +12,17 @@ use super::{
 /// The estimate with the parts that the data show, and no integral that they do not.
 pub(super) fn structured(problem: &mut Problem, found: Estimate, workspace: &mut Workspace) -> Estimate {
     let mut found = simpler(problem, found, workspace);
-    while !problem.explains(&found.x, workspace) {
-        let held = problem.shown.integral == Integral::Held;
-        let limited = if held { None } else { limited(problem, &found, workspace) };
-        let swinging = if problem.shown.swing { None } else { swinging(problem, &found, workspace) };
+    loop {
+        let mut parts = vec![beyond(problem, &found, workspace)];
+        if !problem.explains(&found.x, workspace) {
+            parts.push(limited(problem, &found, workspace));
+            parts.push(swinging(problem, &found, workspace));
+        }
         let cost = |(with, shown): (Estimate, _)| {
             let other = Problem { shown, ..problem.clone() };
             (other.cost_at(&with.x, found.scale_rad, workspace), with, shown)
         };
-        let best = limited.into_iter().chain(swinging).map(cost).min_by(|a, b| a.0.total_cmp(&b.0));
+        let best = parts.into_iter().flatten().map(cost).min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, with, shown)) = best else { break };
         problem.shown = shown;
         found = simpler(problem, with, workspace);

@@ -30,6 +30,9 @@ pub(super) fn swinging(
     found: &Estimate,
     workspace: &mut Workspace,
 ) -> Option<(Estimate, Shown)> {
+    if problem.shown.swing {
+        return None;
+    }
     let mut other = problem.clone();
     other.shown.swing = true;
     let place = |i: usize, value: f64| problem.priors.of(i).place(value);
@@ -45,5 +48,5 @@ pub(super) fn swinging(
     let model = other.model(&with.x);
     let most_1_s = 2.0 * model.damping_ratio * model.natural_frequency_rad_s;
     let stable = DAMPING_RATIO.contains(&model.damping_ratio) && model.position_gain_1_s < STABLE * most_1_s;
-    (stable && problem.gained(&other, &with, found, workspace) > GAIN).then_some((with, other.shown))
+    (stable && problem.gains(GAIN, &other, &with, found, workspace)).then_some((with, other.shown))
 }

@@ -26,7 +26,7 @@ use drawn::Drawn;
 /// Writes a blueprint for `rerun LOG FILE`.
 pub(crate) fn write_blueprint(charts: &Charts, file: &Path) -> Result<(), ViewError> {
     let bytes = of(charts).ok_or(ViewError::Undrawn)?.bytes(&application(charts))?;
-    write_atomically::<_, ViewError>(file, |out| Ok(out.write_all(&bytes).map_err(ViewError::Write)?))
+    write_atomically::<_, ViewError>(file, |out| out.write_all(&bytes).map_err(ViewError::Write))
 }
 
 /// What Rerun calls a file that it opens: by this name a blueprint finds its recording.
