@@ -7,9 +7,12 @@ use super::{
     estimate::{Estimate, Part, Problem, Workspace},
     feed_forward::FeedForward,
     interval::{Knowledge, discrepancy},
+    learn::LITTLE,
     model::Model,
     outcome::JointFit,
-    parameters::{ASYMMETRY, DEAD_TIME, INTEGRAL_GAIN, Integral, LIMITS, Priors, SHARED, Shown, Valve},
+    parameters::{
+        ASYMMETRY, Between, DEAD_TIME, INTEGRAL_GAIN, Integral, LIMITS, Priors, SHARED, Shown, Valve,
+    },
     run::{Run, Sample},
     set_values::SetValues,
     skill::{HeldOutStart, Skill, skill, unexplained_rad},
@@ -70,7 +73,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
             limits: asked_for(runs, limits),
             valve: Valve::default(),
             late: false,
-            swing: false,
+            between: Between::default(),
             integral: Integral::Free,
             feed_forward: true,
         },
@@ -118,12 +121,11 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     let x: Vec<f64> = found.x[..SHARED].iter().copied().chain(of(&place, &found.x[SHARED..])).collect();
     let skill = skill(&Problem { runs: &held_out, ..problem.clone() }, &x, FOLD_ROUNDS, &mut workspace);
     let samples = runs.iter().map(|run| run.samples.len()).sum();
-    let left = Oscillation::of(&problem.longest_left_rad(&found.x, &mut workspace));
-    knowledge.judge(
-        left.character == Character::Calm,
-        skill.held_out_r2,
-        skill.unexplained_share(found.scale_rad),
-    );
+    let calm = problem.leaves(&found.x, &mut workspace) < LITTLE * LITTLE || {
+        let left_rad = problem.longest_left_rad(&found.x, &mut workspace);
+        Oscillation::of(&left_rad).character == Character::Calm
+    };
+    knowledge.judge(calm, skill.held_out_r2, skill.unexplained_share(found.scale_rad));
     let nothing = skill.explains_nothing() || stands(runs);
     let skill = if nothing { skill.without_model(&held_out) } else { skill };
     let joint = report(named, &problem, &found, &knowledge, reached, samples, &skill);

@@ -30,6 +30,7 @@ mod model;
 mod normal;
 mod outcome;
 mod parameters;
+mod play;
 mod predict;
 mod robust;
 mod run;

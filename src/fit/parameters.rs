@@ -7,7 +7,7 @@ use super::model::Model;
 use crate::units::DEGREE_RAD;
 
 /// Number of parameters that all runs share.
-pub(super) const SHARED: usize = 25;
+pub(super) const SHARED: usize = 26;
 
 pub(super) const DEAD_TIME: usize = 0;
 pub(super) const TIME_CONSTANT: usize = 1;
@@ -32,8 +32,10 @@ pub(super) const BEYOND: usize = SET_VALUE_DELAY + 1;
 pub(super) const INTEGRAL_LIMIT: usize = BEYOND + 1;
 pub(super) const FREQUENCY: usize = INTEGRAL_LIMIT + 1;
 pub(super) const DAMPING: usize = FREQUENCY + 1;
+pub(super) const PLAY: usize = DAMPING + 1;
 
-/// Width of the play between joint and sensor that every model has, rad: a free one stands in for the lag of smooth runs.
+/// Width of the play between joint and sensor of a model whose data do not show another, rad: a free one stands in for the lag of smooth
+/// runs.
 const BACKLASH_RAD: f64 = 0.05 * DEGREE_RAD;
 
 /// Prior of one parameter.
@@ -81,6 +83,7 @@ const PRIORS: [Prior; SHARED] = [
     positive(2.0 * DEGREE_RAD, 1.0),
     positive(12.0, 0.7),
     positive(0.3, 0.7),
+    positive(BACKLASH_RAD, 1.0),
 ];
 
 /// What a valve may be.
@@ -90,6 +93,15 @@ pub(super) struct Valve {
     pub(super) edge: bool,
     /// It opens beyond what the largest speeds take.
     pub(super) beyond: bool,
+}
+
+/// What lies between valve and sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Between {
+    /// Oil or a link on which the joint swings.
+    pub(super) swing: bool,
+    /// A play that is not the usual one.
+    pub(super) play: bool,
 }
 
 /// Integral action of a position loop.
@@ -108,8 +120,8 @@ pub(super) struct Shown {
     pub(super) limits: [bool; 4],
     /// What the valve is beside a dead band.
     pub(super) valve: Valve,
-    /// That the joint swings between valve and sensor.
-    pub(super) swing: bool,
+    /// What lies between valve and sensor.
+    pub(super) between: Between,
     /// Set values that come late, by a filter and a delay.
     pub(super) late: bool,
     /// Integral action of the position loop.
@@ -126,7 +138,8 @@ impl Shown {
             FILTER | SET_VALUE_DELAY => self.late,
             BEYOND => self.valve.beyond,
             INTEGRAL_GAIN => self.integral != Integral::None,
-            FREQUENCY | DAMPING => self.swing,
+            FREQUENCY | DAMPING => self.between.swing,
+            PLAY => self.between.play,
             INTEGRAL_LIMIT => self.integral == Integral::Held,
             FEED_FORWARD => self.feed_forward,
             LIMITS.. => self.limits.get(parameter - LIMITS).is_none_or(|shown| *shown),
@@ -187,9 +200,9 @@ impl Priors {
             set_value_filter_s: if shown.late { value(FILTER) } else { 0.0 },
             set_value_delay_s: if shown.late { value(SET_VALUE_DELAY) } else { 0.0 },
             opens_beyond: if shown.valve.beyond { value(BEYOND) } else { 0.0 },
-            natural_frequency_rad_s: if shown.swing { value(FREQUENCY) } else { 0.0 },
-            damping_ratio: if shown.swing { value(DAMPING) } else { 0.0 },
-            backlash_rad: BACKLASH_RAD,
+            natural_frequency_rad_s: if shown.between.swing { value(FREQUENCY) } else { 0.0 },
+            damping_ratio: if shown.between.swing { value(DAMPING) } else { 0.0 },
+            backlash_rad: if shown.between.play { value(PLAY) } else { BACKLASH_RAD },
         }
     }
 

@@ -6,6 +6,7 @@ use super::{
     estimate::{Estimate, Problem, Workspace},
     integral::{limited, without},
     parameters::Integral,
+    play::played,
     swing::swinging,
 };
 
@@ -13,7 +14,7 @@ use super::{
 pub(super) fn structured(problem: &mut Problem, found: Estimate, workspace: &mut Workspace) -> Estimate {
     let mut found = simpler(problem, found, workspace);
     loop {
-        let mut parts = vec![beyond(problem, &found, workspace)];
+        let mut parts = vec![beyond(problem, &found, workspace), played(problem, &found, workspace)];
         if !problem.explains(&found.x, workspace) {
             parts.push(limited(problem, &found, workspace));
             parts.push(swinging(problem, &found, workspace));

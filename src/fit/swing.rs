@@ -30,11 +30,11 @@ pub(super) fn swinging(
     found: &Estimate,
     workspace: &mut Workspace,
 ) -> Option<(Estimate, Shown)> {
-    if problem.shown.swing {
+    if problem.shown.between.swing {
         return None;
     }
     let mut other = problem.clone();
-    other.shown.swing = true;
+    other.shown.between.swing = true;
     let place = |i: usize, value: f64| problem.priors.of(i).place(value);
     let starts = STARTS_RAD_S.map(|frequency_rad_s| {
         let mut x = found.x.clone();

@@ -39,7 +39,7 @@ const PEAK_STEP_HZ: f64 = 0.02;
 const LONGEST_S: f64 = 3.0;
 
 /// Less than this share of what a plan is off by unaided does not ring.
-const LITTLE: f64 = 0.04;
+pub(in crate::fit) const LITTLE: f64 = 0.04;
 
 /// How a joint answers where the model has no explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -15,8 +15,12 @@ use crate::{
     replay::Dimension,
     series::JointKind,
     text::shell_word,
+    units::DEGREE_RAD,
     workflow::fit::{Fitted, torque::JointTorque},
 };
+
+/// A play of less, rad, goes without a word.
+const PLAY_RAD: f64 = 0.1 * DEGREE_RAD;
 
 const LOOP: [Shown; 5] = [
     shown("lag", "lag", |j| j.lag_s, Dimension::Duration, 0),
@@ -255,6 +259,13 @@ fn structure(fit: &Fit) -> Vec<String> {
             swinging.join(", ")
         )
     }));
+    let loose = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.backlash_rad > PLAY_RAD);
+    let loose: Vec<String> = loose
+        .map(|joint| format!("{} {}", joint.name, position(joint.kind, joint.model.backlash_rad)))
+        .collect();
+    lines.extend(
+        (!loose.is_empty()).then(|| format!("Between joint and sensor there is play: {}.", loose.join(", "))),
+    );
     let held = fit.joints.iter().filter(|joint| joint.model_holds);
     let held: Vec<String> = held
         .filter_map(|joint| {

@@ -155,3 +155,19 @@ fn intervals_behind_a_filter_of_another_form_hold_the_truth_or_nothing_is_claime
         assert!(joint.lag_s.identified, "{seed}: {joint:?}");
     }
 }
+
+#[test]
+fn a_play_that_is_not_the_usual_one_is_no_dead_band() {
+    let plan = trial(&["J"]);
+    for (seed, width_deg) in [(1, 0.0), (2, 0.0), (1, 0.4), (3, 0.4)] {
+        let truth =
+            Model { backlash_rad: width_deg * DEGREE_RAD, dead_band_rad_s: 0.2 * DEGREE_RAD, ..QUICK };
+        let found = joint_of(&truth, &plan, seed);
+        let off_deg = (found.model.backlash_rad / DEGREE_RAD - width_deg).abs();
+        assert!(off_deg < 0.02, "{seed}: {found:?}");
+        let [low, high] = found.dead_band_rad_s.interval.unwrap();
+        assert!((low..=high).contains(&truth.leaves_rest_rad_s()), "{seed}: {found:?}");
+    }
+    let usual = joint_of(&QUICK, &plan, 1);
+    assert!((usual.model.backlash_rad - QUICK.backlash_rad).abs() < 1e-9, "{usual:?}");
+}
