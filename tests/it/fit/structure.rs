@@ -166,7 +166,8 @@ fn a_play_that_is_not_the_usual_one_is_no_dead_band() {
         let off_deg = (found.model.backlash_rad / DEGREE_RAD - width_deg).abs();
         assert!(off_deg < 0.02, "{seed}: {found:?}");
         let [low, high] = found.dead_band_rad_s.interval.unwrap();
-        assert!((low..=high).contains(&truth.leaves_rest_rad_s()), "{seed}: {found:?}");
+        let leaves_rest_rad_s = truth.dead_band_rad_s + truth.hysteresis_rad_s + truth.stiction_rad_s;
+        assert!((low..=high).contains(&leaves_rest_rad_s), "{seed}: {found:?}");
     }
     let usual = joint_of(&QUICK, &plan, 1);
     assert!((usual.model.backlash_rad - QUICK.backlash_rad).abs() < 1e-9, "{usual:?}");
