@@ -173,7 +173,7 @@ impl Run {
             let (objectives, violations) = (told.f.len(), told.violations.len());
             return Err(MoeaError::Told { objectives, violations, members, wanted: members * m });
         }
-        let constraints = self.scales.as_ref().map(|scales| scales.0.len());
+        let constraints = self.scales.as_ref().map(Scales::constraints);
         let c = told.each.len() / members.max(1);
         if told.each.len() != members * c || constraints.is_some_and(|before| members > 0 && before != c) {
             return Err(MoeaError::ToldEach { violations: told.each.len(), members, constraints });
@@ -190,7 +190,8 @@ impl Run {
         for ((f, own), &told) in f.chunks_exact_mut(m).zip(totals.iter_mut()).zip(&told.violations) {
             *own = evaluate::checked(told, f);
         }
-        self.scales.get_or_insert_with(|| Scales(vec![0.0; c])).add_each(&told.each, totals);
+        let State { pending, population, .. } = &mut self.state;
+        self.scales.get_or_insert_with(|| Scales::new(c)).add_each(&told.each, pending, population);
         self.state.advance();
         self.record.ask_next(&self.state.pending);
         Ok(())
