@@ -134,10 +134,16 @@ pub enum MoeaError {
     },
     /// A record is of another run.
     #[error(
-        "after {evaluation} evaluations the record is of a run with other settings (with a budget, its length is one), or of another version"
+        "after {evaluation} evaluations the record is of a run with other settings (with a budget, its length is one), of another version, or of a machine whose mathematical library rounds otherwise"
     )]
     Record {
         /// Evaluations that agree.
+        evaluation: u64,
+    },
+    /// Values of a record are not those that were told.
+    #[error("the values after {evaluation} evaluations of the record are damaged: their checksum is another")]
+    Damaged {
+        /// Evaluations before them.
         evaluation: u64,
     },
     /// A larger population than anyone can mean.
