@@ -227,3 +227,32 @@ fn benchmarks_take_any_shape_and_their_fronts_stay_small() {
     }
     assert!(Benchmark::named("DTLZ5", 3).unwrap().front(usize::MAX).len() <= 3_000_000);
 }
+
+#[test]
+fn fronts_of_curves_and_parts_have_nearly_as_many_points_as_asked_for_and_none_is_dominated() {
+    for name in ["WFG1", "WFG2", "DTLZ7"] {
+        for m in [2, 3, 5, 8] {
+            let problem = Benchmark::named(name, m).unwrap();
+            for count in [150, 1000] {
+                let front = problem.front(count);
+                let points = front.len() / m;
+                let least = if name == "DTLZ7" { count / 2 } else { count * 3 / 4 };
+                assert!((least..=count).contains(&points), "{name}, {m} objectives: {points} of {count}");
+                let all = Population::from_objectives(&front, m);
+                assert_eq!(all.front().len(), points, "{name}, {m} objectives, {count}");
+            }
+        }
+    }
+    // A point of WFG2 whose last objective is no less than that of a smaller first parameter is none of the front.
+    let problem = Benchmark::named("WFG2", 3).unwrap().with_variables(2, 2).unwrap();
+    let front = problem.front(1000);
+    let mut f = [0.0; 3];
+    for i in 0..=1000 {
+        for j in 0..=20 {
+            let x = [0.002 * f64::from(i), 0.2 * f64::from(j), 6.0 * 0.35, 8.0 * 0.35];
+            problem.evaluate(&x, &mut f, &mut Vec::new());
+            let beaten = front.chunks_exact(3).find(|z| f.iter().zip(*z).all(|(f, z)| *f < z - 1e-6));
+            assert!(beaten.is_none(), "{f:?} beats {beaten:?}");
+        }
+    }
+}
