@@ -33,7 +33,8 @@ const BEYOND: f64 = 1.1;
 
 impl Reference {
     /// Measures against a front, `[n][objectives]` in one slice. A front without extent in an objective counts as if it
-    /// had an extent of 1 there.
+    /// had an extent of 1 there. Of a slice of another
+    /// width distances are NaN.
     pub fn new(front: Vec<f64>, objectives: usize) -> Self {
         let m = objectives.clamp(1, MOST_OBJECTIVES);
         let of = |k: usize| front.iter().skip(k).step_by(m).copied().filter(|f| f.is_finite());

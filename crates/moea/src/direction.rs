@@ -1,6 +1,6 @@
 //! Reference directions on the unit simplex.
 
-use super::error::MoeaError;
+use super::error::{MoeaError, Unsound};
 
 /// More directions than this are refused: a population of that size cannot be meant.
 pub const MOST_DIRECTIONS: usize = 100_000;
@@ -134,10 +134,10 @@ pub(super) fn own<'a>(
     }
     let mut flat = Vec::new();
     for (index, direction) in given.enumerate() {
-        let sound = direction.iter().filter(|z| **z >= 0.0).count();
         let largest = direction.iter().copied().fold(0.0, f64::max);
-        if direction.len() != objectives || sound != objectives || !(largest > 0.0 && largest.is_finite()) {
-            return Err(MoeaError::Direction { index, sound, wanted: objectives });
+        let wrong = Unsound::of(direction, objectives, |z| z >= 0.0 && z.is_finite());
+        if let Some(found) = wrong.or((largest <= 0.0).then_some(Unsound::Zeros)) {
+            return Err(MoeaError::Direction { index, found, wanted: objectives });
         }
         // By the largest first, so that no sum is infinite and no quotient loses its digits.
         let sum: f64 = direction.iter().map(|z| z / largest).sum();
@@ -244,13 +244,18 @@ mod tests {
             points(&[&[3.0, 1.0], &[0.0, 1e308], &[1e308, 1e308]]),
             Ok(vec![0.75, 0.25, 0.0, 1.0, 0.5, 0.5])
         );
-        for (wrong, sound) in
-            [(&[1.0][..], 1), (&[1.0, -1.0], 1), (&[0.0, 0.0], 2), (&[f64::NAN, 1.0], 1), (&[1.0; 3], 3)]
-        {
-            let refused = MoeaError::Direction { index: 1, sound, wanted: 2 };
+        let value = |index, value| Unsound::Value { index, value };
+        for (wrong, found) in [
+            (&[1.0][..], Unsound::Length(1)),
+            (&[1.0, -1.0], value(1, -1.0)),
+            (&[0.0, 0.0], Unsound::Zeros),
+            (&[f64::INFINITY, 1.0], value(0, f64::INFINITY)),
+            (&[1.0; 3], Unsound::Length(3)),
+        ] {
+            let refused = MoeaError::Direction { index: 1, found, wanted: 2 };
             assert_eq!(points(&[&[1.0, 1.0], wrong]), Err(refused), "{wrong:?}");
         }
-        assert!(points(&[&[f64::INFINITY, 1.0]]).is_err());
+        assert!(points(&[&[f64::NAN, 1.0]]).is_err());
         assert_eq!(points(&[]), Err(MoeaError::DirectionCount { given: 0, most: MOST_DIRECTIONS }));
     }
 

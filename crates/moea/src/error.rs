@@ -1,6 +1,10 @@
 //! Why a problem cannot be run.
 
+use std::fmt;
+
 use thiserror::Error;
+
+use super::variables::{FARTHEST, LARGEST as LARGEST_INTEGER};
 
 /// Why a problem cannot be run with these settings.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -13,9 +17,7 @@ pub enum MoeaError {
     #[error("the problem has no objectives")]
     NoObjectives,
     /// A bound is no number of at most 1e300, or lower and upper are swapped.
-    #[error(
-        "variable {index} cannot lie between {lower:e} and {upper:e}; bounds are numbers of at most 1e300, the lower first"
-    )]
+    #[error("variable {index} cannot lie between {lower:e} and {upper:e}: {}", no_bounds(*lower, *upper))]
     Bounds {
         /// Index of the variable.
         index: usize,
@@ -33,9 +35,7 @@ pub enum MoeaError {
         wanted: usize,
     },
     /// No whole number lies within the bounds of an integer, or they are too large.
-    #[error(
-        "variable {index} is an integer, of which none is between {lower:e} and {upper:e} or one exceeds 1e15"
-    )]
+    #[error("variable {index} is an integer between {lower:e} and {upper:e}: {}", no_integers(*lower, *upper))]
     Integer {
         /// Index of the variable.
         index: usize,
@@ -45,12 +45,12 @@ pub enum MoeaError {
         upper: f64,
     },
     /// An initial member has the wrong length or a value that is not finite.
-    #[error("initial member {member} has {given} finite values, the problem has {wanted} variables")]
+    #[error("initial member {member} has {found}; the problem has {wanted} variables, of finite values")]
     Initial {
         /// Index of the member.
         member: usize,
-        /// Number of finite values given.
-        given: usize,
+        /// What is wrong with it.
+        found: Unsound,
         /// Number of variables.
         wanted: usize,
     },
@@ -82,13 +82,13 @@ pub enum MoeaError {
     },
     /// A reference direction has the wrong length, a value below 0 or that is no number, or no length.
     #[error(
-        "reference direction {index} has {sound} values not below 0, {wanted} are needed, finite and not all 0"
+        "reference direction {index} has {found}; it needs {wanted} finite values, none below 0 and not all 0"
     )]
     Direction {
         /// Index of the direction.
         index: usize,
-        /// Number of values that are not below 0.
-        sound: usize,
+        /// What is wrong with it.
+        found: Unsound,
         /// Number of objectives.
         wanted: usize,
     },
@@ -134,10 +134,16 @@ pub enum MoeaError {
     },
     /// A record is of another run.
     #[error(
-        "after {evaluation} evaluations the record is of a run with other settings (with a budget, its length is one), or of another version"
+        "after {evaluation} evaluations the record is of a run with other settings (with a budget, its length is one), of another version, or of a machine whose mathematical library rounds otherwise"
     )]
     Record {
         /// Evaluations that agree.
+        evaluation: u64,
+    },
+    /// Values of a record are not those that were told.
+    #[error("the values after {evaluation} evaluations of the record are damaged: their checksum is another")]
+    Damaged {
+        /// Evaluations before them.
         evaluation: u64,
     },
     /// A larger population than anyone can mean.
@@ -150,8 +156,95 @@ pub enum MoeaError {
     },
 }
 
+/// What is wrong with a row of values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Unsound {
+    /// So many values, which are too few or too many.
+    Length(usize),
+    /// A value that cannot be.
+    Value {
+        /// Its index in the row.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// All values are 0.
+    Zeros,
+}
+
+impl fmt::Display for Unsound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Length(1) => write!(f, "1 value"),
+            Self::Length(length) => write!(f, "{length} values"),
+            Self::Value { index, value } => write!(f, "{value:e} as its value {index}"),
+            Self::Zeros => write!(f, "only zeros"),
+        }
+    }
+}
+
+impl Unsound {
+    /// What is wrong with a row that should have `wanted` values that are all `sound`.
+    pub(super) fn of(row: &[f64], wanted: usize, sound: impl Fn(f64) -> bool) -> Option<Self> {
+        if row.len() != wanted {
+            return Some(Self::Length(row.len()));
+        }
+        let index = row.iter().position(|value| !sound(*value))?;
+        Some(Self::Value { index, value: row[index] })
+    }
+}
+
+/// Why bounds are none.
+fn no_bounds(lower: f64, upper: f64) -> String {
+    match [("lower", lower), ("upper", upper)]
+        .iter()
+        .find(|(_, bound)| bound.is_nan() || bound.abs() > FARTHEST)
+    {
+        Some((name, bound)) => format!("the {name} bound, {bound:e}, is no number of at most {FARTHEST:e}"),
+        None => "the lower bound is above the upper one".to_owned(),
+    }
+}
+
+/// Why an integer has no values within its bounds.
+fn no_integers(lower: f64, upper: f64) -> String {
+    match [("lower", lower), ("upper", upper)].iter().find(|(_, bound)| bound.abs() > LARGEST_INTEGER) {
+        Some((name, bound)) => format!("the {name} bound, {bound:e}, is beyond {LARGEST_INTEGER:e}"),
+        None => "no whole number lies there".to_owned(),
+    }
+}
+
 /// How many violations of single constraints members need.
 fn needed(members: usize, constraints: Option<usize>) -> String {
     let total = constraints.map(|constraints| members.saturating_mul(constraints));
     total.map_or_else(|| format!("a multiple of {members}"), |total| total.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Directions, Kind, Settings, Variables, settings::check};
+
+    #[test]
+    fn an_error_names_the_value_that_is_wrong_and_its_place() {
+        let direction = |z: &[f64]| Directions::Own(vec![vec![1.0; 2], z.to_vec()]).points(2, 0).unwrap_err();
+        let settings = |x: &[f64]| Settings { initial: vec![x.to_vec()], ..Settings::default() };
+        let initial = |x: &[f64]| check((&[(0.0, 1.0); 2]).into(), 2, &settings(x)).map(|_| ()).unwrap_err();
+        let bounds = |bounds: (f64, f64), kind: Kind| {
+            check(Variables::new(vec![bounds], vec![kind]), 2, &Settings::default()).map(|_| ()).unwrap_err()
+        };
+        for (error, words) in [
+            (direction(&[0.0, 0.0]), "reference direction 1 has only zeros; "),
+            (direction(&[1.0, f64::INFINITY]), "reference direction 1 has inf as its value 1; "),
+            (direction(&[-0.5, 1.0]), "reference direction 1 has -5e-1 as its value 0; "),
+            (direction(&[1.0; 3]), "reference direction 1 has 3 values; it needs 2 "),
+            (initial(&[0.5, f64::NAN]), "initial member 0 has NaN as its value 1; "),
+            (initial(&[0.5]), "initial member 0 has 1 value; the problem has 2 "),
+            (bounds((0.2, 0.8), Kind::Integer), "between 2e-1 and 8e-1: no whole number lies there"),
+            (bounds((0.0, 1e16), Kind::Integer), "the upper bound, 1e16, is beyond 1e15"),
+            (bounds((f64::NAN, 1.0), Kind::Real), "the lower bound, NaN, is no number of at most 1e300"),
+            (bounds((2.0, 1.0), Kind::Real), "the lower bound is above the upper one"),
+        ] {
+            assert!(error.to_string().contains(words), "{error}");
+        }
+    }
 }

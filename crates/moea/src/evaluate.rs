@@ -8,6 +8,9 @@ use super::{Population, Problem};
 /// objectives stay finite.
 const LARGEST: f64 = 1e100;
 
+/// Share of a scale that is kept from one generation to the next.
+const KEPT: f64 = 0.8;
+
 /// What is kept from one evaluation of members to the next.
 pub(super) struct Evaluation<P: Problem> {
     workspaces: Vec<P::Workspace>,
@@ -16,20 +19,34 @@ pub(super) struct Evaluation<P: Problem> {
     scales: Scales,
 }
 
-/// What a violation of each constraint is divided by, `[constraints]`; 0 until somebody violated it.
-pub(super) struct Scales(pub(super) Vec<f64>);
+/// What a violation of each constraint is divided by: the upper quartile of the violations above 0 of this generation,
+/// or four fifths of the scale before, whichever is larger.
+///
+/// The few that violate a constraint by far more than the rest do not set it. It grows at once where children violate
+/// by more than a first population that nearly keeps a constraint, as one found by another run does; and it falls with
+/// a constraint that is violated by less and less, which would count for nothing beside the others.
+pub(super) struct Scales {
+    /// `[constraints]`; 0 until somebody violated it.
+    of: Vec<f64>,
+    /// Violations since quartiles were last taken, `[n][constraints]`.
+    gathered: Vec<f64>,
+    /// Members that quartiles are taken of: half of the first generation. Algorithms that evaluate children one at a time
+    /// have no generation at once.
+    enough: usize,
+}
 
 impl<P: Problem> Evaluation<P> {
     pub(super) fn new(problem: &P) -> Self {
-        Self { workspaces: Vec::new(), each: Vec::new(), scales: Scales(vec![0.0; problem.constraints()]) }
+        Self { workspaces: Vec::new(), each: Vec::new(), scales: Scales::new(problem.constraints()) }
     }
 
-    /// Evaluates all members; draws nothing at random, and writes by index.
-    pub(super) fn evaluate(&mut self, problem: &P, population: &mut Population) {
-        let (d, m, n) = (population.variables().max(1), population.objectives().max(1), population.len());
-        let c = self.scales.0.len();
+    /// Evaluates all members that are pending; draws nothing at random, and writes by index. Totals of the population
+    /// stay comparable to theirs.
+    pub(super) fn evaluate(&mut self, problem: &P, pending: &mut Population, population: &mut Population) {
+        let (d, m, n) = (pending.variables().max(1), pending.objectives().max(1), pending.len());
+        let c = self.scales.constraints();
         let width = c.max(1);
-        let (x, f, violation) = population.evaluation_parts();
+        let (x, f, violation) = pending.evaluation_parts();
         self.each.clear();
         self.each.resize(n * width, 0.0);
         let pieces =
@@ -59,29 +76,77 @@ impl<P: Problem> Evaluation<P> {
                 .zip(self.workspaces.par_iter_mut())
                 .for_each(|((((x, f), violation), each), memory)| run(x, f, violation, each, memory));
         }
-        self.scales.add_each(&self.each, violation);
+        self.scales.add_each(&self.each, pending, population);
     }
 }
 
 impl Scales {
-    /// Adds the violations of single constraints, `[n][constraints]`, to the totals, `[n]`, each by its scale.
-    pub(super) fn add_each(&mut self, each: &[f64], total: &mut [f64]) {
-        let c = self.0.len();
-        if c == 0 {
+    /// For so many constraints.
+    pub(super) fn new(constraints: usize) -> Self {
+        Self { of: vec![0.0; constraints], gathered: Vec::new(), enough: 0 }
+    }
+
+    /// Number of constraints.
+    pub(super) fn constraints(&self) -> usize {
+        self.of.len()
+    }
+
+    /// Adds the violations of single constraints of the members just evaluated, `[n][constraints]`, to their totals,
+    /// each by its scale. Where scales change, totals of the population follow: all are in the same scales.
+    pub(super) fn add_each(&mut self, each: &[f64], pending: &mut Population, population: &mut Population) {
+        if self.of.is_empty() {
             return;
         }
-        for (j, scale) in self.0.iter_mut().enumerate().filter(|(_, scale)| **scale <= 0.0) {
-            let sound = each.iter().skip(j).step_by(c).filter(|v| **v <= LARGEST);
-            *scale = sound.fold(0.0, |largest, &v| v.max(largest));
-        }
-        for (total, each) in total.iter_mut().zip(each.chunks_exact(c)) {
-            // A constraint without a scale has been violated by nobody.
-            let shares = each.iter().zip(&self.0).filter(|(v, _)| **v > 0.0);
-            let sum = shares.map(|(v, scale)| v / scale).sum::<f64>().min(LARGEST);
-            let sound = each.iter().all(|v| v.abs() <= LARGEST);
-            *total = if sound { *total + sum } else { f64::INFINITY };
+        let changed = self.learn(each);
+        pending.divide_totals(each, self.of.len());
+        pending.retotal(|parts| self.total(parts));
+        if changed {
+            population.retotal(|parts| self.total(parts));
         }
     }
+
+    /// Learns from further violations, `[n][constraints]`; returns whether a scale has changed.
+    fn learn(&mut self, each: &[f64]) -> bool {
+        let c = self.of.len();
+        self.gathered.extend_from_slice(each);
+        let gathered = self.gathered.len() / c;
+        if self.enough == 0 {
+            self.enough = gathered.div_ceil(2);
+        }
+        let is_enough = gathered >= self.enough;
+        let mut changed = false;
+        for (j, scale) in self.of.iter_mut().enumerate() {
+            if is_enough || *scale <= 0.0 {
+                let of = self.gathered.iter().skip(j).step_by(c);
+                let quartile = upper_quartile(of.copied().filter(|v| *v > 0.0 && *v <= LARGEST).collect());
+                if let Some(quartile) = quartile {
+                    *scale = quartile.max(KEPT * *scale);
+                    changed = true;
+                }
+            }
+        }
+        if is_enough {
+            self.gathered.clear();
+        }
+        changed
+    }
+
+    /// The total of a member: what `evaluate` returned, and the violations of its constraints by their scales.
+    fn total(&self, (base, each): (f64, &[f64])) -> f64 {
+        if !each.iter().all(|v| v.abs() <= LARGEST) {
+            return f64::INFINITY;
+        }
+        // What is above 0 has been learnt from, so that its scale is above 0; and it stays above 0 when divided.
+        let shares = each.iter().zip(&self.of).filter(|(v, _)| **v > 0.0);
+        let sum: f64 = shares.map(|(v, scale)| (v / scale).max(f64::MIN_POSITIVE)).sum();
+        base + sum.min(LARGEST)
+    }
+}
+
+/// The value that a quarter of them is not below; none of none.
+fn upper_quartile(mut values: Vec<f64>) -> Option<f64> {
+    let at = values.len() * 3 / 4;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
 /// The violation, infinite if anything is not a number of reasonable size. Zeros lose their

@@ -1,9 +1,12 @@
 #![doc = include_str!("../README.md")]
 //!
-//! # The same on every machine
+//! # The same on any number of cores
 //!
 //! All random numbers come from the seed, by one stream a purpose; evaluation draws none and is
-//! collected by index. Equal settings give an equal [`Outcome`] on any number of cores.
+//! collected by index. Equal settings give an equal [`Outcome`] on any number of cores, and on all machines whose
+//! mathematical library rounds alike: powers, exponentials and cosines of the C library differ in their last digit
+//! between processors with and without fused multiplication, and a run with them. A [`Record`] of the one may be
+//! refused on the other.
 //!
 //! # Scale and origin
 //!
@@ -73,7 +76,7 @@ mod variation;
 pub use agemoea2::Geodesic;
 pub use archive::Archive;
 pub use direction::{Directions, MOST_DIRECTIONS, das_dennis, direction_count};
-pub use error::MoeaError;
+pub use error::{MoeaError, Unsound};
 pub use focus::Focus;
 pub use mating::{Mating, MatingContext, Pair, Uniform};
 pub use named::{ALGORITHMS, NamedAlgorithm};

@@ -22,6 +22,10 @@ const PENALTY: f64 = 5.0;
 /// Least span of an objective, as a share of the range that it was ever seen in.
 const LEAST_SPAN: f64 = 1e-3;
 
+/// Neighbours of a direction, itself included: a tenth of the directions, and no fewer than these. Of few directions a
+/// tenth is but three, whose parents are too much alike.
+const LEAST_NEAR: usize = 10;
+
 /// State of a run; member i belongs to direction i.
 pub(super) struct Decomposition {
     m: usize,
@@ -44,7 +48,7 @@ pub(super) struct Decomposition {
 impl Decomposition {
     pub(super) fn new(directions: &[f64], m: usize, normalized: bool, breeding: Breeding) -> Self {
         let count = directions.len() / m;
-        let near = count.div_ceil(10).max(2).min(count);
+        let near = count.div_ceil(10).max(LEAST_NEAR).min(count);
         let lengths = directions.chunks_exact(m).flat_map(|z| {
             let length = z.iter().map(|z| z * z).sum::<f64>().sqrt();
             z.iter().map(move |z| z / length)

@@ -31,9 +31,11 @@ impl Rays {
         let count = directions.len() / m;
         let mut by_objective = vec![0.0; m * count];
         for (j, direction) in directions.chunks_exact(m).enumerate() {
-            let length = direction.iter().map(|z| z * z).sum::<f64>().sqrt();
+            // By a power of two first, which changes no digit: no square is infinite, nor all of them 0.
+            let unit = power_of_two(direction.iter().copied().fold(0.0, f64::max));
+            let length = direction.iter().map(|z| (z / unit) * (z / unit)).sum::<f64>().sqrt();
             for k in 0..m {
-                by_objective[k * count + j] = direction[k] / length;
+                by_objective[k * count + j] = direction[k] / unit / length;
             }
         }
         Self { m, count, by_objective, dot: vec![0.0; count] }
@@ -62,6 +64,11 @@ impl Rays {
     }
 }
 
+/// The largest power of two that is not above `value`, 2^-1022 at least.
+fn power_of_two(value: f64) -> f64 {
+    f64::from_bits(value.to_bits() & f64::INFINITY.to_bits()).max(f64::MIN_POSITIVE)
+}
+
 /// Survival of NSGA-III for fixed reference directions.
 #[derive(Debug, Clone)]
 pub struct Niching {
@@ -88,7 +95,7 @@ pub struct Niching {
 const SURPLUS: f64 = 0.1;
 
 impl Niching {
-    /// For reference directions, `[count][m]` in one slice, of a problem with `m` objectives. Of a population with
+    /// For reference directions, `[count][m]` in one slice and of any length, of a problem with `m` objectives. Of a population with
     /// another number of objectives the first members survive.
     ///
     /// # Errors
@@ -315,6 +322,20 @@ mod tests {
         assert_eq!(sparse(&spread), 20);
         assert!(sparse(&random) < 20, "{random:?}");
         assert!(spread[0] < 1e-12 && spread[39] > 1.0 - 1e-12, "{spread:?}");
+    }
+
+    #[test]
+    fn the_length_of_a_direction_does_not_matter() {
+        let line: Vec<f64> = (0..=20).map(f64::from).flat_map(|i| [i / 20.0, 1.0 - i / 20.0, 0.0]).collect();
+        for make in [Niching::new, Niching::filled_by_crowding] {
+            let kept = |length: f64| {
+                let directions = [1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0].map(|z| z * length);
+                survivors(make(&directions, 3).unwrap(), &line, 3).0
+            };
+            for length in [1.0, 3.0, 1e150, 1e160, 1e308, 1e-150, 1e-170, 1e-320] {
+                assert_eq!(kept(length), [0.0, 0.5, 1.0], "{length:e}");
+            }
+        }
     }
 
     #[test]

@@ -69,7 +69,7 @@ fn run<P: Problem>(
 ) -> Outcome {
     let mut evaluation = Evaluation::new(problem);
     while !state.is_over {
-        evaluation.evaluate(problem, &mut state.pending);
+        evaluation.evaluate(problem, &mut state.pending, &mut state.population);
         if state.advance() && observer(&state.progress()).is_break() {
             break;
         }

@@ -12,6 +12,31 @@ pub struct Population {
     f: Vec<f64>,
     violation: Vec<f64>,
     fingerprint: Vec<u64>,
+    parts: Parts,
+}
+
+/// What the total violation of each member is made of, `[n][1 + constraints]`: a total without constraints, and the
+/// violation of each. Of no width if no constraint is told one by one; no property of members that they are equal by.
+#[derive(Debug, Clone, Default)]
+struct Parts {
+    width: usize,
+    flat: Vec<f64>,
+}
+
+impl PartialEq for Parts {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Parts {
+    /// Adds a member of which only the total is known.
+    fn push_total(&mut self, total: f64) {
+        if self.width > 0 {
+            self.flat.push(total);
+            self.flat.resize(self.flat.len() + self.width - 1, 0.0);
+        }
+    }
 }
 
 /// Numbers that room is made for at most before there are any.
@@ -34,6 +59,7 @@ impl Population {
             f: Vec::with_capacity(room(objectives)),
             violation: Vec::with_capacity(room(1)),
             fingerprint: Vec::with_capacity(room(1)),
+            parts: Parts::default(),
         }
     }
 
@@ -91,7 +117,8 @@ impl Population {
     pub fn from_objectives(f: &[f64], objectives: usize) -> Self {
         let n = f.len() / objectives.max(1);
         let f = f[..n * objectives].iter().map(|f| f + 0.0).collect();
-        Self { variables: 0, objectives, x: Vec::new(), f, violation: vec![0.0; n], fingerprint: vec![0; n] }
+        let (x, violation, fingerprint) = (Vec::new(), vec![0.0; n], vec![0; n]);
+        Self { variables: 0, objectives, x, f, violation, fingerprint, parts: Parts::default() }
     }
 
     /// Adds a member that has been evaluated: `x` `[variables]`, `f` `[objectives]`. One of another
@@ -103,6 +130,7 @@ impl Population {
             self.f.extend(f.iter().map(|f| f + 0.0));
             self.violation.push(if violation.is_nan() { f64::INFINITY } else { violation });
             self.fingerprint.push(fingerprint(x));
+            self.parts.push_total(self.violation.last().copied().unwrap_or_default());
         }
     }
 
@@ -111,9 +139,10 @@ impl Population {
         self.f.clear();
         self.violation.clear();
         self.fingerprint.clear();
+        self.parts.flat.clear();
     }
 
-    /// Adds a member that is still to be evaluated.
+    /// Adds a member that is still to be evaluated; what its total is made of is told of all members at once.
     pub(super) fn push_x(&mut self, x: &[f64]) {
         self.x.extend_from_slice(x);
         self.f.resize(self.f.len() + self.objectives, f64::INFINITY);
@@ -123,26 +152,57 @@ impl Population {
 
     /// Adds member `i` of another population of the same shape.
     pub(super) fn push_from(&mut self, other: &Self, i: usize) {
+        if self.is_empty() {
+            self.parts.width = other.parts.width;
+        }
         self.x.extend_from_slice(other.x(i));
         self.f.extend_from_slice(other.f(i));
         self.violation.push(other.violation[i]);
         self.fingerprint.push(other.fingerprint[i]);
+        match row(&other.parts.flat, i, other.parts.width) {
+            parts if parts.len() == self.parts.width => self.parts.flat.extend_from_slice(parts),
+            _ => self.parts.push_total(other.violation[i]),
+        }
     }
 
     pub(super) fn append(&mut self, other: &Self) {
-        self.x.extend_from_slice(&other.x);
-        self.f.extend_from_slice(&other.f);
-        self.violation.extend_from_slice(&other.violation);
-        self.fingerprint.extend_from_slice(&other.fingerprint);
+        for i in 0..other.len() {
+            self.push_from(other, i);
+        }
     }
 
     /// Replaces member `i` by member `j` of `other`.
     pub(super) fn replace(&mut self, i: usize, other: &Self, j: usize) {
-        let (d, m) = (self.variables, self.objectives);
+        let (d, m, width) = (self.variables, self.objectives, self.parts.width);
         self.x[i * d..][..d].copy_from_slice(other.x(j));
         self.f[i * m..][..m].copy_from_slice(other.f(j));
         self.violation[i] = other.violation[j];
         self.fingerprint[i] = other.fingerprint[j];
+        let own = self.parts.flat.chunks_exact_mut(width.max(1)).nth(i);
+        own.into_iter()
+            .flatten()
+            .zip(row(&other.parts.flat, j, width))
+            .for_each(|(own, other)| *own = *other);
+    }
+
+    /// Notes that the totals are without the violations of single constraints, `[n][constraints]`.
+    pub(super) fn divide_totals(&mut self, each: &[f64], constraints: usize) {
+        self.parts.width = constraints + 1;
+        self.parts.flat.clear();
+        for (base, each) in self.violation.iter().zip(each.chunks_exact(constraints.max(1))) {
+            self.parts.flat.push(*base);
+            self.parts.flat.extend_from_slice(each);
+        }
+    }
+
+    /// Forms all totals anew from what they are made of: a total without constraints, and the violation of each.
+    pub(super) fn retotal(&mut self, total: impl Fn((f64, &[f64])) -> f64) {
+        let parts = self.parts.flat.chunks_exact(self.parts.width.max(1));
+        for (violation, parts) in self.violation.iter_mut().zip(parts) {
+            if let Some((base, each)) = parts.split_first() {
+                *violation = total((*base, each));
+            }
+        }
     }
 
     /// Whether a member has exactly these variables.

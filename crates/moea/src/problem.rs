@@ -76,10 +76,12 @@ pub trait Problem: Sync {
     /// first), each in a unit of its own; what is not above 0 is kept. Called after every `evaluate`
     /// with its `x`, `objectives` and workspace if there are [`Problem::constraints`].
     ///
-    /// Each violation is divided by the largest of its constraint in the first generation that
-    /// violates it, and added to what `evaluate` returned: the unit does not matter, and a member's
-    /// total does not change in a run. One that is NaN, infinite or beyond 1e100 makes `x` the worst
-    /// there is.
+    /// Each violation is divided by the scale of its constraint and added to what `evaluate` returned, so that the unit
+    /// does not matter. The scale is the upper quartile of the violations above 0 of this generation, or four fifths of
+    /// the scale before, whichever is larger (MOEA/D, which evaluates one child at a time, takes half a generation at
+    /// once): neither a few that are far larger set it, nor first members that nearly keep the constraint. Totals of all
+    /// members are in the present scales, and so change in a run. A violation that is NaN, infinite or beyond
+    /// 1e100 makes `x` the worst there is.
     ///
     /// ```
     /// use moea::{Bounds, Problem, Settings, optimise, silent};

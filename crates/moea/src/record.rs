@@ -7,7 +7,8 @@ use super::Population;
 /// All values that a [`Run`](super::Run) was told, to be kept in any format of serde.
 ///
 /// The run is taken up by telling the same values again: its state is a function of them and of the
-/// settings. Takes eight bytes an objective and violation; no evaluation is made again.
+/// settings. Takes eight bytes an objective and violation; no evaluation is made again. A checksum a generation tells
+/// values that were damaged on the way.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Record {
     batches: Vec<Batch>,
@@ -23,6 +24,16 @@ pub(super) struct Batch {
     /// Bits of objectives, total violation and violations of single constraints of each,
     /// `[n][objectives + 1 + constraints]`: no format loses a digit of them, or what is no number.
     values: Vec<u64>,
+    /// Of the values. Records of before there were checksums have none, and are read from formats that name fields.
+    #[serde(default)]
+    checksum: Option<u64>,
+}
+
+/// FNV-1a of 64 bits over the bytes of the values, the lowest first: any single bit changes it.
+fn checksum(values: &[u64]) -> u64 {
+    values.iter().flat_map(|value| value.to_le_bytes()).fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
 }
 
 impl Record {
@@ -38,7 +49,8 @@ impl Record {
             let member = told.f[i * m..][..m].iter().chain([violation]).chain(&told.each[i * c..][..c]);
             values.extend(member.map(|v| v.to_bits()));
         }
-        self.batches.push(Batch { print: asked.print(), values });
+        let checksum = Some(checksum(&values));
+        self.batches.push(Batch { print: asked.print(), values, checksum });
     }
 
     /// Notes the members asked for after the last values told.
@@ -62,6 +74,11 @@ pub(super) struct Told {
 }
 
 impl Batch {
+    /// Whether the values are those that were told, as far as a checksum knows.
+    pub(super) fn is_sound(&self) -> bool {
+        self.checksum.is_none_or(|sum| sum == checksum(&self.values))
+    }
+
     /// What was told; none if it is of other members than those asked for.
     pub(super) fn values(&self, asked: &Population) -> Option<Told> {
         let (m, n) = (asked.objectives(), asked.len());

@@ -99,12 +99,13 @@ impl Run {
         Ok(Self::of(&checked, settings, method))
     }
 
-    /// Takes up a run of [`Self::new`] where its record ends.
+    /// Takes up a run of [`Self::new`] where its record ends. An observer that looks back, as a
+    /// [`Tolerance`](super::Tolerance) does, is shown what was by [`Self::replay_watched`].
     ///
     /// # Errors
     ///
     /// [`MoeaError`] when the settings do not fit, [`MoeaError::Record`] when the record is of a run
-    /// with others.
+    /// with others, [`MoeaError::Damaged`] when its values are not those that were told.
     pub fn resume(
         variables: impl Into<Variables>,
         objectives: usize,
@@ -121,15 +122,66 @@ impl Run {
     /// # Errors
     ///
     /// [`MoeaError::Record`] when the record holds other members than this run asks for, those after the last
-    /// values too, or when this run was told values before.
+    /// values too, or when this run was told values before; [`MoeaError::Damaged`] when its values are not those that
+    /// were told.
     pub fn replay(&mut self, record: &Record) -> Result<(), MoeaError> {
+        self.replay_watched(record, |_| {})
+    }
+
+    /// As [`Self::replay`], and shows every generation that ends to `watch`, as [`optimise`](super::optimise()) shows
+    /// it to an observer: a [`Tolerance`](super::Tolerance) that has watched them ends the run where it would have
+    /// ended in one go.
+    ///
+    /// ```
+    /// use moea::{Run, Settings, Tolerance};
+    ///
+    /// let (bounds, settings) = ([(-10.0, 10.0)], Settings::default());
+    /// let evaluate = |x: &[f64]| [x[0].powi(2), (x[0] - 2.0).powi(2)];
+    /// let mut run = Run::new(&bounds, 2, &settings)?;
+    /// let step = |run: &mut Run| {
+    ///     let objectives: Vec<f64> = run.ask().into_iter().flat_map(evaluate).collect();
+    ///     run.tell(&objectives, &vec![0.0; objectives.len() / 2])
+    /// };
+    /// for _ in 0..10 {
+    ///     step(&mut run)?;
+    /// }
+    /// let record = run.record().clone();
+    ///
+    /// let mut tolerance = Tolerance::new(1e-3, 20);
+    /// let mut run = Run::new(&bounds, 2, &settings)?;
+    /// run.replay_watched(&record, |progress| {
+    ///     let _ = tolerance.watch(progress);
+    /// })?;
+    /// while !run.is_over() {
+    ///     step(&mut run)?;
+    ///     if tolerance.watch(&run.progress()).is_break() {
+    ///         break;
+    ///     }
+    /// }
+    /// # Ok::<(), moea::MoeaError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::replay`].
+    pub fn replay_watched(
+        &mut self,
+        record: &Record,
+        mut watch: impl FnMut(&Progress<'_>),
+    ) -> Result<(), MoeaError> {
         let is_new = self.record.batches().is_empty();
         for batch in record.batches() {
-            let asked = &self.state.pending;
-            let told = batch.values(asked).filter(|_| is_new && !self.is_over());
+            if !batch.is_sound() {
+                return Err(MoeaError::Damaged { evaluation: self.progress().evaluations });
+            }
+            let told = batch.values(&self.state.pending).filter(|_| is_new && !self.is_over());
             let told = told.ok_or_else(|| self.other_record())?;
+            let generation = self.progress().generation;
             self.asked.set(true);
             self.take(&told)?;
+            if self.progress().generation > generation {
+                watch(&self.progress());
+            }
         }
         if is_new && self.record.goes_on_as(record) { Ok(()) } else { Err(self.other_record()) }
     }
@@ -173,7 +225,7 @@ impl Run {
             let (objectives, violations) = (told.f.len(), told.violations.len());
             return Err(MoeaError::Told { objectives, violations, members, wanted: members * m });
         }
-        let constraints = self.scales.as_ref().map(|scales| scales.0.len());
+        let constraints = self.scales.as_ref().map(Scales::constraints);
         let c = told.each.len() / members.max(1);
         if told.each.len() != members * c || constraints.is_some_and(|before| members > 0 && before != c) {
             return Err(MoeaError::ToldEach { violations: told.each.len(), members, constraints });
@@ -190,7 +242,8 @@ impl Run {
         for ((f, own), &told) in f.chunks_exact_mut(m).zip(totals.iter_mut()).zip(&told.violations) {
             *own = evaluate::checked(told, f);
         }
-        self.scales.get_or_insert_with(|| Scales(vec![0.0; c])).add_each(&told.each, totals);
+        let State { pending, population, .. } = &mut self.state;
+        self.scales.get_or_insert_with(|| Scales::new(c)).add_each(&told.each, pending, population);
         self.state.advance();
         self.record.ask_next(&self.state.pending);
         Ok(())

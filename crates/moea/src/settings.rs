@@ -2,7 +2,7 @@
 
 use super::{
     direction::{Directions, MOST_OBJECTIVES},
-    error::MoeaError,
+    error::{MoeaError, Unsound},
     focus::Focus,
     variables::{Space, Variables},
     variation::Operators,
@@ -61,7 +61,8 @@ pub enum Budget {
 pub struct Settings {
     /// The algorithm; NSGA-III-FO by default.
     pub algorithm: Algorithm,
-    /// Reference directions.
+    /// Reference directions; NSGA-II, AGE-MOEA-II, SMS-EMOA and MSOPS-II take from them the size of a population that is
+    /// not given, and nothing else.
     pub directions: Directions,
     /// Wanted number of members, by default that of directions; rounded up to a multiple of four. NSGA-III, U-NSGA-III
     /// and NSGA-III-FO have no fewer members than directions ([`Directions::FromPopulation`] gives as many as fit),
@@ -123,9 +124,8 @@ pub(super) fn check(
         return Err(MoeaError::TooManyObjectives { objectives, most: MOST_OBJECTIVES });
     }
     for (member, x) in settings.initial.iter().enumerate() {
-        let given = x.iter().filter(|v| v.is_finite()).count();
-        if given != space.len() || x.len() != space.len() {
-            return Err(MoeaError::Initial { member, given, wanted: space.len() });
+        if let Some(found) = Unsound::of(x, space.len(), f64::is_finite) {
+            return Err(MoeaError::Initial { member, found, wanted: space.len() });
         }
     }
     let operators = &settings.operators;
@@ -141,7 +141,17 @@ pub(super) fn check(
         }
     }
     let usual = 92;
-    let directions = settings.directions.points(objectives, settings.population.unwrap_or(usual))?;
+    let has_directions = !matches!(
+        settings.algorithm,
+        Algorithm::Nsga2 | Algorithm::Msops2 | Algorithm::AgeMoea2 | Algorithm::SmsEmoa
+    );
+    // Without them only the usual size of a population needs directions, and those of the caller's are still checked.
+    let own = matches!(settings.directions, Directions::Own(_));
+    let directions = if has_directions || own || settings.population.is_none() {
+        settings.directions.points(objectives, settings.population.unwrap_or(usual))?
+    } else {
+        Vec::new()
+    };
     let count = directions.len() / objectives;
     let wanted = settings.population.unwrap_or(if objectives == 1 { usual } else { count });
     if wanted > MOST_MEMBERS {
@@ -155,8 +165,8 @@ pub(super) fn check(
     let rounded = |members: usize| members.max(4).next_multiple_of(4);
     let members = match settings.algorithm {
         Algorithm::Moead { .. } => count,
-        Algorithm::Nsga3 | Algorithm::UNsga3 | Algorithm::Nsga3Fo { .. } => rounded(wanted.max(count)),
-        Algorithm::Nsga2 | Algorithm::Msops2 | Algorithm::AgeMoea2 | Algorithm::SmsEmoa => rounded(wanted),
+        _ if has_directions => rounded(wanted.max(count)),
+        _ => rounded(wanted),
     };
     Ok(Checked { space, objectives, directions, members, mutation_rate })
 }

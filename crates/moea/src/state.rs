@@ -14,7 +14,7 @@ pub(super) struct State {
     streams: Streams,
     /// Size of the population.
     n: usize,
-    population: Population,
+    pub(super) population: Population,
     /// To be evaluated.
     pub(super) pending: Population,
     archive: Option<Archive>,

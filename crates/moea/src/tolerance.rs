@@ -12,6 +12,9 @@ use super::{Population, Progress, indicator::igd_plus};
 /// range of all feasible members watched so far: neither origin nor unit of an objective matters. Nothing ends before a feasible member is found. With [`Budget::Observer`] a run ends by it
 /// alone; the focus of NSGA-III-FO fades with a budget only.
 ///
+/// It looks back at the generations that it has watched: a run that is taken up from its record shows them again by
+/// [`Run::replay_watched`](super::Run::replay_watched), and ends where it would have in one go.
+///
 /// [`Budget::Observer`]: super::Budget::Observer
 ///
 /// ```
@@ -37,8 +40,10 @@ pub struct Tolerance {
 
 impl Tolerance {
     /// Ends a run that gains no more than `least` (a share of the front's range) within `period`
-    /// generations.
+    /// generations. A `least` below 0, or that is no number, counts as 0: a front that gains nothing ends the run.
     pub fn new(least: f64, period: u64) -> Self {
+        // The larger of 0 and NaN is 0.
+        let least = least.max(0.0);
         Self { least, period: period.max(1), generation: 0, before: Vec::new(), seen: Vec::new() }
     }
 

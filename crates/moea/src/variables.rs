@@ -65,10 +65,10 @@ impl From<&Vec<Bounds>> for Variables {
 }
 
 /// Largest size of a bound: sums and spreads of values within are numbers.
-const FARTHEST: f64 = 1e300;
+pub(super) const FARTHEST: f64 = 1e300;
 
 /// Largest size of an integer: all below are numbers, and so are their halves.
-const LARGEST: f64 = 1e15;
+pub(super) const LARGEST: f64 = 1e15;
 
 /// The values that variables may take, none of them without any.
 #[derive(Debug, Clone)]

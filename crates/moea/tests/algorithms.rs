@@ -335,7 +335,7 @@ fn settings_that_cannot_be_meant_are_refused_with_their_numbers() {
     let error = |settings: Settings| optimise(&problem, &settings, silent).unwrap_err();
     assert_eq!(
         error(Settings { initial: vec![vec![0.0; 3]], ..Settings::default() }),
-        MoeaError::Initial { member: 0, given: 3, wanted: 12 }
+        MoeaError::Initial { member: 0, found: moea::Unsound::Length(3), wanted: 12 }
     );
     let mut settings = Settings::default();
     settings.operators.crossover_rate = 1.5;

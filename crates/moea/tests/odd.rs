@@ -4,7 +4,7 @@
 
 use moea::{
     Archive, Crowding, Directions, Geodesic, LeastContribution, Mating, MatingContext, MoeaError, Niching,
-    Pair, Population, Problem, Random, Ranking, Settings, Sorting, Survival, Tournament,
+    Pair, Population, Problem, Random, Ranking, Settings, Sorting, Survival, Tournament, Unsound,
     benchmark::{Benchmark, NAMES},
     das_dennis, direction_count, dominates,
     indicator::{contributions, hypervolume, igd, igd_plus},
@@ -63,11 +63,25 @@ impl Problem for Wide {
 }
 
 #[test]
+fn directions_are_formed_for_those_alone_that_use_them() {
+    for name in ["nsga2", "age-moea-2", "sms-emoa", "msops2"] {
+        let algorithm = moea::NamedAlgorithm::find(name).unwrap().algorithm;
+        let budget = moea::Budget::Evaluations(8);
+        let settings = Settings { algorithm, population: Some(8), budget, ..Settings::default() };
+        assert_eq!(optimise(&Wide(1000), &settings, silent).unwrap().population.len(), 8, "{name}");
+        let none = Settings { directions: Directions::Own(Vec::new()), ..settings };
+        assert!(optimise(&Wide(2), &none, silent).is_err(), "{name}");
+    }
+    let settings = Settings { population: Some(8), ..Settings::default() };
+    assert!(optimise(&Wide(1000), &settings, silent).is_err());
+}
+
+#[test]
 fn a_survival_for_directions_refuses_none_and_those_of_another_length() {
     for make in [Niching::new, Niching::filled_by_crowding] {
         assert_eq!(make(&[], 2).unwrap_err(), MoeaError::DirectionCount { given: 0, most: 100_000 });
         assert_eq!(make(&[], 0).unwrap_err(), MoeaError::NoObjectives);
-        let short = MoeaError::Direction { index: 1, sound: 1, wanted: 2 };
+        let short = MoeaError::Direction { index: 1, found: Unsound::Length(1), wanted: 2 };
         assert_eq!(make(&[1.0, 0.0, 1.0], 2).unwrap_err(), short);
         assert!(
             make(&[0.0, 0.0], 2).is_err() && make(&[NAN, 1.0], 2).is_err() && make(&[-1.0, 1.0], 2).is_err()
@@ -144,7 +158,8 @@ fn indicators_take_any_number() {
                 reference.iter().all(|r| r.is_finite()) && set.len().is_multiple_of(reference.len().max(1));
             assert!(volume >= 0.0 || !fits, "{set:?} {reference:?}: {volume}");
             for contribution in contributions(set, reference) {
-                assert!(contribution >= 0.0, "{set:?} {reference:?}: {contribution}");
+                let fits = set.len().is_multiple_of(reference.len().max(1));
+                assert!(contribution >= 0.0 || !fits, "{set:?} {reference:?}: {contribution}");
             }
             for m in [0, 1, 2, 3, usize::MAX] {
                 let _ = (igd(set, reference, m), igd_plus(set, reference, m));
@@ -211,4 +226,33 @@ fn benchmarks_take_any_shape_and_their_fronts_stay_small() {
         assert!(many.nadir().iter().all(|nadir| nadir.is_finite()));
     }
     assert!(Benchmark::named("DTLZ5", 3).unwrap().front(usize::MAX).len() <= 3_000_000);
+}
+
+#[test]
+fn fronts_of_curves_and_parts_have_nearly_as_many_points_as_asked_for_and_none_is_dominated() {
+    for name in ["WFG1", "WFG2", "DTLZ7"] {
+        for m in [2, 3, 5, 8] {
+            let problem = Benchmark::named(name, m).unwrap();
+            for count in [150, 1000] {
+                let front = problem.front(count);
+                let points = front.len() / m;
+                let least = if name == "DTLZ7" { count / 2 } else { count * 3 / 4 };
+                assert!((least..=count).contains(&points), "{name}, {m} objectives: {points} of {count}");
+                let all = Population::from_objectives(&front, m);
+                assert_eq!(all.front().len(), points, "{name}, {m} objectives, {count}");
+            }
+        }
+    }
+    // A point of WFG2 whose last objective is no less than that of a smaller first parameter is none of the front.
+    let problem = Benchmark::named("WFG2", 3).unwrap().with_variables(2, 2).unwrap();
+    let front = problem.front(1000);
+    let mut f = [0.0; 3];
+    for i in 0..=1000 {
+        for j in 0..=20 {
+            let x = [0.002 * f64::from(i), 0.2 * f64::from(j), 6.0 * 0.35, 8.0 * 0.35];
+            problem.evaluate(&x, &mut f, &mut Vec::new());
+            let beaten = front.chunks_exact(3).find(|z| f.iter().zip(*z).all(|(f, z)| *f < z - 1e-6));
+            assert!(beaten.is_none(), "{f:?} beats {beaten:?}");
+        }
+    }
 }

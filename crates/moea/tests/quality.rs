@@ -80,3 +80,21 @@ fn without_directions_a_front_that_is_a_curve_is_covered_better() {
         }
     }
 }
+
+#[test]
+fn decomposition_into_few_directions_finds_the_whole_front() {
+    let problem = Benchmark::named("DTLZ1", 3).unwrap();
+    let reference = Reference::of(&problem, 1000);
+    for (divisions, most) in [(5, 0.055), (6, 0.045)] {
+        for name in ["moead", "moead-normalized"] {
+            let algorithm = NamedAlgorithm::find(name).unwrap().algorithm;
+            let run = |seed| {
+                let directions = moea::Directions::Divisions(divisions);
+                let settings = Settings { algorithm, directions, seed, ..Settings::default() };
+                reference.measure(&optimise(&problem, &settings, silent).unwrap().population)
+            };
+            let runs: Vec<Quality> = (1..=7).map(run).collect();
+            assert!(median(&runs, |q| q.igd) < most, "{name}: {runs:?}");
+        }
+    }
+}

@@ -225,3 +225,36 @@ fn a_mating_without_pairs_ends_the_run() {
     let all = moea::optimise_with(&problem(), &settings, uniform, moea::Crowding::default(), silent);
     assert_eq!(all.unwrap().evaluations, 20_000);
 }
+
+#[test]
+fn a_record_with_damaged_values_is_refused_and_one_without_checksums_is_read() {
+    let settings = Settings {
+        algorithm: moea::Algorithm::Nsga2,
+        population: Some(8),
+        budget: Budget::Evaluations(24),
+        ..Settings::default()
+    };
+    let problem = problem();
+    let mut run = Run::new(problem.bounds(), 3, &settings).unwrap();
+    while !run.is_over() {
+        tell(&problem, &mut run);
+    }
+    let sound = serde_json::to_value(run.record()).unwrap();
+    let resumed = |value: &serde_json::Value| {
+        let record: Record = serde_json::from_value(value.clone()).unwrap();
+        Run::resume(problem.bounds(), 3, &settings, &record).map(Run::into_outcome)
+    };
+    for bit in [0, 20, 50, 63] {
+        for at in 0..32 {
+            let mut damaged = sound.clone();
+            let value = &mut damaged["batches"][2]["values"][at];
+            *value = (value.as_u64().unwrap() ^ (1 << bit)).into();
+            assert_eq!(resumed(&damaged), Err(MoeaError::Damaged { evaluation: 16 }), "{bit} {at}");
+        }
+    }
+    let mut old = sound.clone();
+    for batch in old["batches"].as_array_mut().unwrap() {
+        assert!(batch.as_object_mut().unwrap().remove("checksum").is_some());
+    }
+    assert_eq!(resumed(&old).unwrap(), resumed(&sound).unwrap());
+}

@@ -147,3 +147,52 @@ fn without_a_feasible_member_nothing_ends_and_a_flat_front_ends_at_once() {
     let run = optimise(&Flat, &settings, |progress| tolerance.watch(progress)).unwrap();
     assert_eq!(run.generations, 10);
 }
+
+#[test]
+fn a_least_gain_that_is_none_counts_as_nothing() {
+    let settings = Settings { budget: Budget::Generations(2000), ..Settings::default() };
+    let ends = |least: f64| {
+        let mut tolerance = Tolerance::new(least, 5);
+        let problem = Bowl { objectives: 1, least: 0.0, unit: 1.0 };
+        optimise(&problem, &settings, |progress| tolerance.watch(progress)).unwrap().generations
+    };
+    let nothing = ends(0.0);
+    assert!(nothing < 2000, "{nothing}");
+    for least in [f64::NAN, -1.0, f64::NEG_INFINITY] {
+        assert_eq!(ends(least), nothing, "{least}");
+    }
+}
+
+#[test]
+fn a_run_that_is_taken_up_again_ends_by_its_tolerance_where_it_would_have_in_one_go() {
+    let bounds = [(0.0, 1.0); 3];
+    for algorithm in ["nsga3-fo", "moead"] {
+        let algorithm = NamedAlgorithm::find(algorithm).unwrap().algorithm;
+        let settings = Settings { algorithm, budget: Budget::Observer, ..Settings::default() };
+        let go_on = |run: &mut Run, tolerance: &mut Tolerance, stop: u64| {
+            while run.progress().generation < stop {
+                let f: Vec<f64> =
+                    run.ask().into_iter().flat_map(|x| [x[0], 1.0 - x[0] + x[1] + x[2]]).collect();
+                run.tell(&f, &vec![0.0; f.len() / 2]).unwrap();
+                if tolerance.watch(&run.progress()).is_break() {
+                    return;
+                }
+            }
+        };
+        let fresh = || (Run::new(bounds, 2, &settings).unwrap(), Tolerance::new(1e-3, 20));
+        let (mut once, mut tolerance) = fresh();
+        go_on(&mut once, &mut tolerance, 400);
+        let end = once.progress().generation;
+        assert!((40..400).contains(&end));
+        for stop in [1, 25, end - 15, end - 1] {
+            let (mut first, mut tolerance) = fresh();
+            go_on(&mut first, &mut tolerance, stop);
+            let (mut again, mut tolerance) = fresh();
+            again
+                .replay_watched(first.record(), |progress| assert!(tolerance.watch(progress).is_continue()))
+                .unwrap();
+            go_on(&mut again, &mut tolerance, 400);
+            assert_eq!(again.progress().generation, end, "{stop}");
+        }
+    }
+}

@@ -3,14 +3,19 @@
 use std::{collections::BTreeSet, f64::consts::PI};
 
 use super::{Benchmark, Family, wfg};
-use crate::{Population, das_dennis, direction_count};
+use crate::{Random, das_dennis, direction_count};
 
-/// Cells an objective's range is cut into where a front is thinned to one point a cell.
-const CELLS: f64 = 40.0;
 /// Most points of any front.
 const MOST: usize = 1_000_000;
-/// Most points of a front before it is thinned.
-const GRID: f64 = 20_000.0;
+/// Least and most points of a front before it is thinned, and how many there are for each that is kept.
+const CANDIDATES: (usize, usize) = (20_000, 200_000);
+const CHOICE: usize = 20;
+/// Most numbers that they consist of.
+const NUMBERS: usize = 4_000_000;
+/// Halvings of the ratio of the cells that are too fine and those that are not.
+const ROUNDS: usize = 14;
+/// Points of a grid over the first parameter.
+const FINE: u32 = 100_000;
 
 /// The directions with at most `count` points, `[n][m]`.
 fn directions(m: usize, count: usize) -> Vec<f64> {
@@ -21,7 +26,7 @@ fn directions(m: usize, count: usize) -> Vec<f64> {
     das_dennis(m, p).unwrap_or_default()
 }
 
-/// At most about `count` points of the front, spread over it, `[n][m]`; of WFG1 and WFG2 as many as their grid has.
+/// At most about `count` points of the front, spread over it, `[n][m]`.
 pub(super) fn points(problem: &Benchmark, count: usize) -> Vec<f64> {
     let (m, count) = (problem.objectives, count.clamp(1, MOST));
     match (problem.family, problem.number) {
@@ -29,7 +34,11 @@ pub(super) fn points(problem: &Benchmark, count: usize) -> Vec<f64> {
         (Family::Dtlz, 2..=4) => scaled(directions(m, count), m, |z, _| 1.0 / length(z)),
         (Family::Dtlz, 5 | 6) => arc(m, count),
         (Family::Dtlz, _) => disconnected(m, count),
-        (Family::Wfg, 1 | 2) => thinned(&undominated(&grid(problem), m), m),
+        (Family::Wfg, 1 | 2) => {
+            // Corners alone are as many as objectives.
+            let count = count.max(2 * m);
+            thinned(&candidates(problem, count), m, count)
+        }
         (Family::Wfg, 3) => line(m, count),
         (Family::Wfg, _) => scaled(directions(m, count), m, |z, k| 2.0 * (k as f64 + 1.0) / length(z)),
     }
@@ -103,11 +112,19 @@ fn line(m: usize, count: usize) -> Vec<f64> {
     flat
 }
 
-/// All combinations of evenly spaced numbers in 0 to 1, at most about `most` of them. Where there are many
-/// more corners than that, only those with no, one, or all axes up to one at their upper ends.
+/// All combinations of evenly spaced numbers in 0 to 1, at most about `most` of them, and half as many at least. Where
+/// there are many more corners than that, only those with no, one, or all axes up to one at their upper ends.
 fn each_of_grid(axes: usize, most: f64, mut take: impl FnMut(&[f64])) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive root")]
-    let steps = (most.powf(1.0 / axes.max(1) as f64).floor() as usize).max(2);
+    let least = (most.powf(1.0 / axes.max(1) as f64).floor() as usize).max(2);
+    let mut steps = vec![least; axes];
+    let points = |steps: &[usize]| steps.iter().map(|steps| *steps as f64).product::<f64>();
+    for axis in 0..axes {
+        let all = points(&steps);
+        if all < 0.5 * most && all * (least as f64 + 1.0) <= most * least as f64 {
+            steps[axis] += 1;
+        }
+    }
     let mut at = vec![0usize; axes];
     let mut u = vec![0.0; axes];
     if 2_f64.powf(axes as f64) > 4.0 * most {
@@ -124,52 +141,94 @@ fn each_of_grid(axes: usize, most: f64, mut take: impl FnMut(&[f64])) {
         return;
     }
     loop {
-        for (u, &at) in u.iter_mut().zip(&at) {
+        for ((u, &at), steps) in u.iter_mut().zip(&at).zip(&steps) {
             *u = at as f64 / (steps - 1) as f64;
         }
         take(&u);
-        let Some(axis) = (0..axes).find(|&axis| at[axis] + 1 < steps) else { return };
+        let Some(axis) = (0..axes).find(|&axis| at[axis] + 1 < steps[axis]) else { return };
         at[..axis].fill(0);
         at[axis] += 1;
     }
 }
 
-fn grid(problem: &Benchmark) -> Vec<f64> {
+/// Points of the front of WFG1 or WFG2, its corners first: a grid, and random ones where few steps of a grid fit.
+///
+/// Of equal other parameters the first one trades the last objective for all others. Its values that lower the last
+/// objective below that of all smaller ones are the front, whatever the others are.
+fn candidates(problem: &Benchmark, count: usize) -> Vec<f64> {
     let m = problem.objectives;
-    let mut flat = Vec::new();
-    let (mut t, mut f) = (vec![0.0; m], vec![0.0; m]);
-    each_of_grid(m - 1, GRID, |u| {
+    let mut firsts = Vec::new();
+    let mut lowest = f64::INFINITY;
+    for i in 0..=FINE {
+        let (at, mut of) = (f64::from(i) / f64::from(FINE), [0.0; 2]);
+        wfg::shape(problem.number, &[at, 0.0], &mut of);
+        if of[1] < lowest {
+            lowest = of[1];
+            firsts.push(at);
+        }
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
+    let first = |u: f64| firsts[(u * (firsts.len() - 1) as f64).round() as usize];
+    let (mut t, mut f, mut flat) = (vec![0.0; m], vec![0.0; m], Vec::new());
+    let mut take = |u: &[f64]| {
         t[..m - 1].copy_from_slice(u);
+        t[0] = first(u[0]);
         wfg::shape(problem.number, &t, &mut f);
         flat.extend_from_slice(&f);
-    });
+    };
+    each_of_grid(m - 1, 2.0, &mut take);
+    let wanted = count.saturating_mul(CHOICE).clamp(CANDIDATES.0, CANDIDATES.1).min(NUMBERS / m);
+    each_of_grid(m - 1, wanted as f64, &mut take);
+    if m > 4 {
+        let (mut rng, mut u) = (Random::of_survival(0), vec![0.0; m - 1]);
+        for _ in 0..wanted {
+            u.fill_with(|| rng.unit());
+            take(&u);
+        }
+    }
     flat
 }
 
-fn undominated(flat: &[f64], m: usize) -> Vec<f64> {
-    let all = Population::from_objectives(flat, m);
-    all.front().into_iter().flat_map(|i| all.f(i).to_vec()).collect()
-}
-
-/// The first point in each cell of a grid over the range of the front.
-fn thinned(flat: &[f64], m: usize) -> Vec<f64> {
+/// At most `count` of the points, nearly as many if they differ: the first in each cell of the finest grid over the
+/// range of the front that has no more.
+fn thinned(flat: &[f64], m: usize, count: usize) -> Vec<f64> {
     let range = |k: usize| {
         let values = || flat.iter().skip(k).step_by(m).copied();
         (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max))
     };
     let ranges: Vec<(f64, f64)> = (0..m).map(range).collect();
-    let mut taken = BTreeSet::new();
-    let mut kept = Vec::new();
-    for point in flat.chunks_exact(m) {
-        #[expect(clippy::cast_possible_truncation, reason = "0 to the number of cells")]
-        let cell: Vec<i64> = point
-            .iter()
-            .zip(&ranges)
-            .map(|(p, (low, high))| ((p - low) / (high - low).max(f64::MIN_POSITIVE) * CELLS) as i64)
-            .collect();
-        if taken.insert(cell) {
-            kept.extend_from_slice(point);
+    let one_a_cell = |cells: f64| {
+        let (mut taken, mut kept) = (BTreeSet::new(), Vec::new());
+        for point in flat.chunks_exact(m) {
+            #[expect(clippy::cast_possible_truncation, reason = "0 to the number of cells")]
+            let cell: Vec<i64> = point
+                .iter()
+                .zip(&ranges)
+                .map(|(p, (low, high))| ((p - low) / (high - low).max(f64::MIN_POSITIVE) * cells) as i64)
+                .collect();
+            if taken.insert(cell) {
+                kept.extend_from_slice(point);
+                if kept.len() > count * m {
+                    return None;
+                }
+            }
+        }
+        Some(kept)
+    };
+    // The finest of all only drops what is repeated.
+    let (mut coarse, mut fine) = (0.5_f64, 1e9_f64);
+    let mut best = one_a_cell(coarse).unwrap_or_default();
+    for _ in 0..ROUNDS {
+        let middle = (coarse * fine).sqrt();
+        match one_a_cell(middle) {
+            Some(kept) => {
+                coarse = middle;
+                if kept.len() > best.len() {
+                    best = kept;
+                }
+            }
+            None => fine = middle,
         }
     }
-    kept
+    best
 }

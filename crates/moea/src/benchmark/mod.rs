@@ -91,7 +91,12 @@ impl Benchmark {
     }
 
     /// About `count` points spread over the true front, `[n][objectives]`; over the usual part of it where
-    /// [`Self::has_whole_front`] is false. More where its corners alone, or the pieces that it comes in, are more.
+    /// [`Self::has_whole_front`] is false. More where its corners alone, or the pieces that it comes in, are more; fewer
+    /// where the next finer grid has more: of DTLZ7 half at least, of those that stand on reference directions (DTLZ1 to
+    /// 4, WFG4 to 9) as many as the finest set of them that fits; of WFG1 and WFG2 200 000 at most.
+    ///
+    /// Points of many objectives lie far apart: of WFG1 and WFG2 with five to ten the nearest of 1000 points is on
+    /// average .03 of the range of the front from one of it, and up to a quarter where the front is large.
     pub fn front(&self, count: usize) -> Vec<f64> {
         front::points(self, count)
     }

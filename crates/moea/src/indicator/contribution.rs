@@ -7,11 +7,15 @@ use super::hypervolume::exclusive;
 ///
 /// `set` is `[n][objectives]` in one slice, `reference` `[objectives]`. Points that are dominated, repeated or not
 /// better than the reference in every objective, or not finite, contribute nothing, and neither does any beside a reference that is
-/// no number or where volumes are too large for one. O(n²) for two and three objectives where few
+/// no number or where volumes are too large for one. NaN for each point, the incomplete one too, of a slice of another
+/// width. O(n²) for two and three objectives where few
 /// points border on one, at worst O(n³); about n times more for each further one. Exact but for rounding, about
 /// 1e-15 of the largest box.
 pub fn contributions(set: &[f64], reference: &[f64]) -> Vec<f64> {
     let m = reference.len().max(1);
+    if !set.len().is_multiple_of(m) {
+        return vec![f64::NAN; set.len().div_ceil(m)];
+    }
     let points = Points { set, reference };
     (0..set.len() / m).map(|i| points.contribution(i, |_| true)).collect()
 }
@@ -45,6 +49,12 @@ impl Points<'_> {
 mod tests {
     use super::*;
     use crate::indicator::hypervolume;
+
+    #[test]
+    fn a_slice_of_another_width_has_no_contributions() {
+        let got = contributions(&[0.1, 0.2, 0.3], &[1.0, 1.0]);
+        assert!(got.len() == 2 && got.iter().all(|got| got.is_nan()), "{got:?}");
+    }
 
     #[test]
     fn a_contribution_is_the_volume_that_goes_with_its_point() {

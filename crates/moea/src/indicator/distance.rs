@@ -4,7 +4,7 @@
 /// distance to the nearest member of `set`.
 ///
 /// Both sets are `[n][objectives]` in one slice. A member with an objective that is NaN counts for nothing. Infinite
-/// for an empty set, NaN for no reference points. O(n x n).
+/// for an empty set, NaN for no reference points and for slices of another width. O(n x n).
 ///
 /// DIFFERENCE(eq. 10): the paper sums over the set and divides by the number of reference
 /// points; the definition (Bosman and Thierens 2003) sums over the reference points.
@@ -20,6 +20,9 @@ pub fn igd_plus(set: &[f64], reference: &[f64], objectives: usize) -> f64 {
 
 fn mean_nearest(set: &[f64], reference: &[f64], objectives: usize, part: impl Fn(f64) -> f64) -> f64 {
     let m = objectives.max(1);
+    if !set.len().is_multiple_of(m) || !reference.len().is_multiple_of(m) {
+        return f64::NAN;
+    }
     let nearest = reference.chunks_exact(m).map(|z| {
         let squares = set
             .chunks_exact(m)
@@ -41,5 +44,9 @@ mod tests {
         assert_eq!(igd_plus(&[0.0, 1.0], &reference, 2), 0.0);
         assert_eq!(igd_plus(&[4.0, 5.0], &reference, 2), 5.0);
         assert_eq!(igd(&[], &reference, 2), f64::INFINITY);
+        for distance in [igd, igd_plus] {
+            assert!(distance(&[0.1, 0.2, 0.3], &reference, 2).is_nan());
+            assert!(distance(&reference, &[0.1, 0.2, 0.3], 2).is_nan());
+        }
     }
 }
