@@ -7,7 +7,6 @@ use super::{
     estimate::{Estimate, Part, Problem, Workspace},
     feed_forward::FeedForward,
     interval::{Knowledge, discrepancy},
-    learn::LITTLE,
     model::Model,
     outcome::JointFit,
     parameters::{
@@ -121,7 +120,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     let x: Vec<f64> = found.x[..SHARED].iter().copied().chain(of(&place, &found.x[SHARED..])).collect();
     let skill = skill(&Problem { runs: &held_out, ..problem.clone() }, &x, FOLD_ROUNDS, &mut workspace);
     let samples = runs.iter().map(|run| run.samples.len()).sum();
-    let calm = problem.leaves(&found.x, &mut workspace) < LITTLE * LITTLE || {
+    let calm = Oscillation::is_little(problem.leaves(&found.x, &mut workspace)) || {
         let left_rad = problem.longest_left_rad(&found.x, &mut workspace);
         Oscillation::of(&left_rad).character == Character::Calm
     };

@@ -19,7 +19,6 @@ use std::ops::Range;
 pub use answer::AFTER_S;
 pub use astray::{TRAVELS_RAD, half_astray};
 pub use chance::Chance;
-pub(super) use oscillation::LITTLE;
 pub use oscillation::{Character, Oscillation};
 pub use shape::{Room, SHARE};
 pub use spoilt::MORE_ERROR;

@@ -39,7 +39,7 @@ const PEAK_STEP_HZ: f64 = 0.02;
 const LONGEST_S: f64 = 3.0;
 
 /// Less than this share of what a plan is off by unaided does not ring.
-pub(in crate::fit) const LITTLE: f64 = 0.04;
+const LITTLE: f64 = 0.04;
 
 /// How a joint answers where the model has no explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -83,6 +83,11 @@ impl Oscillation {
         let found = Self::of(unexplained_rad);
         let little = rms(unexplained_rad) < LITTLE * rms(unaided_rad);
         Self { character: if little { Character::Calm } else { found.character }, ..found }
+    }
+
+    /// Whether so small a share of the squared error is too little to ring.
+    pub(in crate::fit) fn is_little(share: f64) -> bool {
+        share < LITTLE * LITTLE
     }
 
     /// Of measured less modelled angles, rad, every [`STEP_S`].

@@ -5,8 +5,8 @@ use super::sources;
 /// Lines of the longest file; of half the files of `src` at most; of `src` and of all Rust together.
 const LONGEST: usize = 400;
 const MEDIAN: usize = 125;
-const LIBRARY: usize = 111_900;
-const ALL: usize = 154_900;
+const LIBRARY: usize = 112_000;
+const ALL: usize = 155_700;
 
 const FOLDERS: [&str; 6] = ["src", "crates", "tests", "benches", "examples", "fuzz"];
 
