@@ -4,7 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-use super::variables::{FARTHEST, LARGEST as LARGEST_INTEGER};
+use super::bounds::{FARTHEST, LARGEST_INTEGER};
 
 /// Why a problem cannot be run with these settings.
 #[derive(Debug, Clone, PartialEq, Error)]

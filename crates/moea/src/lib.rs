@@ -40,6 +40,7 @@
 mod agemoea2;
 mod archive;
 pub mod benchmark;
+mod bounds;
 pub mod compare;
 mod crowding;
 mod direction;

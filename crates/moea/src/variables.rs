@@ -2,6 +2,7 @@
 
 use super::{
     MoeaError, Problem,
+    bounds::{FARTHEST, LARGEST_INTEGER},
     problem::{Bounds, Kind},
     random::Random,
 };
@@ -64,12 +65,6 @@ impl From<&Vec<Bounds>> for Variables {
     }
 }
 
-/// Largest size of a bound: sums and spreads of values within are numbers.
-pub(super) const FARTHEST: f64 = 1e300;
-
-/// Largest size of an integer: all below are numbers, and so are their halves.
-pub(super) const LARGEST: f64 = 1e15;
-
 /// The values that variables may take, none of them without any.
 #[derive(Debug, Clone)]
 pub(super) struct Space {
@@ -101,7 +96,7 @@ impl Space {
             if *whole {
                 // A zero without its sign.
                 *bounds = (lower.ceil() + 0.0, upper.floor() + 0.0);
-                if bounds.0 > bounds.1 || bounds.0 < -LARGEST || bounds.1 > LARGEST {
+                if bounds.0 > bounds.1 || bounds.0 < -LARGEST_INTEGER || bounds.1 > LARGEST_INTEGER {
                     return Err(MoeaError::Integer { index, lower, upper });
                 }
             }
