@@ -81,7 +81,7 @@ impl Oscillation {
     /// explains nearly all has some period by itself.
     pub(super) fn beside(unexplained_rad: &[f64], unaided_rad: &[f64]) -> Self {
         let found = Self::of(unexplained_rad);
-        let little = rms(unexplained_rad) < LITTLE * rms(unaided_rad);
+        let little = Self::is_little((rms(unexplained_rad) / rms(unaided_rad)).powi(2));
         Self { character: if little { Character::Calm } else { found.character }, ..found }
     }
 
