@@ -19,8 +19,8 @@ use crate::{
     workflow::fit::{Fitted, torque::JointTorque},
 };
 
-/// A play of less, rad, goes without a word: what holds a joint before it reverses makes up to 0.12 deg of one where there is 0.04.
-const PLAY_RAD: f64 = 0.2 * DEGREE_RAD;
+/// A play of less, rad, goes without a word: what holds a joint before it reverses makes up to 0.22 deg of one where there is 0.04.
+const PLAY_RAD: f64 = 0.3 * DEGREE_RAD;
 
 const LOOP: [Shown; 5] = [
     shown("lag", "lag", |j| j.lag_s, Dimension::Duration, 0),
