@@ -19,6 +19,7 @@ use crate::{
     atomic_file::{may_write, write_atomically},
     document::pretty,
     input_file::will_read,
+    log::WRITTEN,
     remark::Remarks,
     render::kit::{self, Document, Sentence, TerminalStyle},
 };
@@ -197,8 +198,9 @@ impl<'a> Target<'a> {
 
     pub(super) fn text(&self, document: &Document) -> String {
         match (self.form, self.file) {
-            (Form::Markdown, _) => kit::markdown(document),
-            (_, Some(_)) => kit::text(document),
+            (Form::Markdown, None) => kit::markdown(document),
+            (Form::Markdown, Some(_)) => format!("{}\n<!-- {WRITTEN} -->\n", kit::markdown(document)),
+            (_, Some(_)) => format!("{}\n{WRITTEN}\n", kit::text(document)),
             // What is printed is pasted here and now.
             (_, None) => shown(&document.clone().sparing(&|file| Path::new(file).exists())),
         }

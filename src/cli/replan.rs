@@ -190,14 +190,23 @@ impl Args {
         }
         Ok(replanned)
     }
+
+    /// A task that no log holds, and that its plan is kept.
+    fn task_of_next(&self) -> Vec<String> {
+        let Some(task) = &self.task else { return Vec::new() };
+        let keeps = self.change.keep_plan.then(|| "--keep-plan".to_owned());
+        ["--task".to_owned(), kit::argument(task)].into_iter().chain(keeps).collect()
+    }
 }
 
 impl Run for Args {
     fn run(&self, console: &mut Console<'_>) -> Result<Outcome, CliError> {
         let replanned = self.replanned()?;
         let target = Target::stdout(self.json);
-        let (reading, changing) =
-            (self.sent.words_of_next(), self.change.words_of_next(self.limits.as_deref()));
+        let (reading, changing) = (
+            self.sent.words_of_next(),
+            [self.task_of_next(), self.change.words_of_next(self.limits.as_deref())].concat(),
+        );
         let again = again(std::env::args_os().skip(1));
         let lines = next::Words { again: &again, reading: &reading, changing: &changing };
         let half = Checks::of(&replanned).half_first();

@@ -15,17 +15,31 @@ const THRESHOLD: f64 = 3.84;
 /// than the machine's may gain by clipping anywhere.
 pub(super) const ASKED: f64 = 1.3;
 
-/// Fastest growing and shrinking of the angle if nothing limited the joint.
-fn fastest(problem: &Problem, found: &Estimate, workspace: &mut Workspace) -> [f64; 2] {
-    let mut free = problem.clone();
-    free.shown.limits = [false; 4];
-    let model = free.model(&found.x);
-    let runs = problem.runs.iter().zip(found.x.iter().skip(SHARED));
+/// Fastest growing and shrinking of the angle, as the model has it.
+fn fastest(problem: &Problem, x: &[f64], workspace: &mut Workspace) -> [f64; 2] {
+    let model = problem.model(x);
+    let runs = problem.runs.iter().zip(x.iter().skip(SHARED));
     runs.fold([0.0; 2], |[up, down], (run, integral)| {
         workspace.simulate(&model, run, Priors::integral_rad_s(*integral));
         let [faster, slower] = workspace.fastest();
         [up.max(faster), down.max(slower)]
     })
+}
+
+/// A model that goes as fast as this share of what was reached explains it.
+const EXPLAINS: f64 = 0.98;
+
+/// The least that each limit may be: what was reached, and of a joint that swings beyond the speed that its valve leaves, as its model
+/// does, that speed.
+pub(super) fn least(problem: &Problem, x: &[f64], reached: [f64; 4], workspace: &mut Workspace) -> [f64; 4] {
+    let mut least = reached;
+    if problem.shown.between.swing {
+        let limits = least.iter_mut().zip(fastest(problem, x, workspace)).enumerate();
+        for (i, (least, _)) in limits.filter(|(_, (least, model))| *model >= EXPLAINS * **least) {
+            *least = least.min(problem.priors.of(LIMITS + i).value(x[LIMITS + i]));
+        }
+    }
+    least
 }
 
 /// A speed is a limit if the joint kept this share of it over the time that it takes to that speed and from it, on average: one that
@@ -67,7 +81,9 @@ pub(super) fn seen(
     let data = |residuals: &[f64]| residuals.iter().map(|r| cost(r / found.scale_rad)).sum::<f64>();
     problem.residuals(&found.x, workspace, &mut residuals);
     let (with, kappa) = (data(&residuals), inefficiency(&residuals));
-    let unlimited = fastest(problem, found, workspace);
+    let mut free = problem.clone();
+    free.shown.limits = [false; 4];
+    let unlimited = fastest(&free, &found.x, workspace);
     let (mut seen, mut gains) = (problem.shown.limits, [0.0; 4]);
     for limit in (0..problem.shown.limits.len()).filter(|&limit| problem.shown.limits[limit]) {
         let mut without = problem.clone();

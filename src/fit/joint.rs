@@ -2,7 +2,7 @@
 
 use super::{
     Character, Estimated, HeldOut, Oscillation,
-    censor::{ASKED, seen, sustained},
+    censor::{ASKED, least, seen, sustained},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
     feed_forward::FeedForward,
@@ -110,7 +110,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         found = problem.descend(found.x, ROUNDS, &mut workspace);
         problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);
     }
-    // No limit is below what was reached.
+    let reached = least(&problem, &found.x, reached, &mut workspace);
     for i in (0..4).filter(|i| problem.shown.limits[*i]) {
         found.x[LIMITS + i] = found.x[LIMITS + i].max(priors.of(LIMITS + i).place(reached[i]));
     }

@@ -25,6 +25,17 @@ const DELAYS: u32 = 35;
 /// Fewest samples for a direction.
 const SAMPLES: usize = 60;
 
+/// Slow motion after a longer pause is another motion, s; so many at least tell how far they differ.
+const APART_S: f64 = 0.5;
+const FEWEST: usize = 3;
+
+/// A number that is known no better has no interval: deviation of its logarithm.
+const VAGUE: f64 = 2.0;
+
+/// Rounds in which the weights of points settle, and the distance by the median one from which they fall.
+const ROUNDS: usize = 10;
+const FAR: f64 = 2.0;
+
 /// Deviation of the logarithm by which the result misses on simulated machines.
 const DISCREPANCY: f64 = 0.12;
 
@@ -46,24 +57,24 @@ pub(super) fn dead_band(valve: &Signal, measured: &Track) -> Option<[Estimated; 
             .filter(|(_, fit)| slow(fit))
             .map(|(&t_s, fit)| (t_s, way * fit.velocity))
             .collect();
-        let mut best: Option<(f64, f64)> = None;
+        let motions: Vec<&[(f64, f64)]> = moving.chunk_by(|a, b| b.0 - a.0 < APART_S).collect();
+        let mut best: Option<(f64, f64, Vec<Vec<(f64, f64)>>)> = None;
         for step in 0..DELAYS {
             let delay_s = f64::from(step) * DELAY_STEP_S;
-            let signals: Vec<(f64, f64)> = moving
-                .iter()
-                .filter_map(|(t_s, speed)| Some((*speed, way * valve.at(t_s - delay_s)?)))
-                .collect();
-            let Some((start, spread)) = line(&signals) else { continue };
-            if best.is_none_or(|(_, least)| spread < least) {
-                best = Some((start, spread));
+            let signal = |(t_s, speed): &(f64, f64)| Some((*speed, way * valve.at(t_s - delay_s)?));
+            let signals: Vec<Vec<(f64, f64)>> =
+                motions.iter().map(|motion| motion.iter().filter_map(signal).collect()).collect();
+            let Some((start, spread)) = line(&signals.concat()) else { continue };
+            if best.as_ref().is_none_or(|(_, least, _)| spread < *least) {
+                best = Some((start, spread, signals));
             }
         }
-        let (start, spread) = best.filter(|(start, _)| *start > 0.0)?;
-        let deviation = DISCREPANCY.hypot(spread / start / 3.0);
+        let (start, _, signals) = best.filter(|(start, ..)| *start > 0.0)?;
+        let deviation = DISCREPANCY.hypot(jackknife(&signals) / start);
         let reach = (1.96 * deviation).exp();
         Some(Estimated {
             value: Some(start),
-            interval: Some([start / reach, start * reach]),
+            interval: (deviation < VAGUE).then_some([start / reach, start * reach]),
             identified: deviation < 0.3,
             ..Estimated::default()
         })
@@ -71,18 +82,42 @@ pub(super) fn dead_band(valve: &Signal, measured: &Track) -> Option<[Estimated; 
     Some([one(1.0)?, one(-1.0)?])
 }
 
-/// Signal at no speed on the line through (speed, signal), and the median distance from the line.
+/// Standard deviation of the line's start by leaving out each motion, whose samples tell of one another; infinite of too few.
+fn jackknife(motions: &[Vec<(f64, f64)>]) -> f64 {
+    let without = |out: usize| {
+        let rest = motions.iter().enumerate().filter(|(k, _)| *k != out);
+        line(&rest.flat_map(|(_, motion)| motion.iter().copied()).collect::<Vec<_>>())
+    };
+    let starts: Option<Vec<f64>> = (0..motions.len()).map(|out| Some(without(out)?.0)).collect();
+    let Some(starts) = starts.filter(|starts| starts.len() >= FEWEST) else { return f64::INFINITY };
+    let count = starts.len() as f64;
+    let mean = starts.iter().sum::<f64>() / count;
+    ((count - 1.0) / count * starts.iter().map(|start| (start - mean).powi(2)).sum::<f64>()).sqrt()
+}
+
+/// Signal at no speed on the line through (speed, signal), and the median distance from the line, to which what lies far off counts
+/// little.
 fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     if points.len() < SAMPLES {
         return None;
     }
-    let count = points.len() as f64;
-    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
-    let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
-    let (xx, xy) = (mean(&|p| (p.0 - x).powi(2)), mean(&|p| (p.0 - x) * (p.1 - y)));
-    let slope = xy / xx;
-    let start = y - slope * x;
-    let spread = median(points.iter().map(|p| (p.1 - start - slope * p.0).abs()).collect());
+    let mut weights = vec![1.0; points.len()];
+    let (mut start, mut spread) = (f64::NAN, f64::NAN);
+    for _ in 0..ROUNDS {
+        let count = weights.iter().sum::<f64>();
+        let mean = |of: &dyn Fn(&(f64, f64)) -> f64| {
+            points.iter().zip(&weights).map(|(point, weight)| weight * of(point)).sum::<f64>() / count
+        };
+        let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
+        let (xx, xy) = (mean(&|p| (p.0 - x).powi(2)), mean(&|p| (p.0 - x) * (p.1 - y)));
+        let slope = xy / xx;
+        start = y - slope * x;
+        let off: Vec<f64> = points.iter().map(|p| (p.1 - start - slope * p.0).abs()).collect();
+        spread = median(off.clone());
+        for (weight, off) in weights.iter_mut().zip(off) {
+            *weight = (FAR * spread.max(f64::MIN_POSITIVE) / off.max(f64::MIN_POSITIVE)).min(1.0).powi(2);
+        }
+    }
     (start.is_finite() && spread.is_finite()).then_some((start, spread))
 }
 

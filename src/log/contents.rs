@@ -27,9 +27,9 @@ pub enum Contents {
     Table(String),
     /// A page for browsers, and its first bytes.
     Page(String),
-    /// Settings or a document, by its name, that this program did not write: a task, an arm.
-    Settings,
-    /// Anything else.
+    /// Anything else that this program did not write: a task, an arm, notes, a damaged recording.
+    Foreign,
+    /// What this program wrote beside these, a picture of points, or nothing.
     Other,
 }
 
@@ -52,15 +52,20 @@ const PARQUET: &[u8] = b"PAR1";
 const FOOTER: u64 = 1 << 16;
 /// What the end of a Parquet table holds that this program wrote.
 const OWN_PARQUET: &[u8] = concat!("hydrotrace ", env!("CARGO_PKG_VERSION_MAJOR"), ".").as_bytes();
-/// What documents, figures, layouts and settings begin with that this program wrote.
-const OWN_TEXTS: [&str; 6] = [
-    "{\n  \"format\": \"hydrotrace.", "<svg", "{\n  \"configById\": {", LIMITS_BEGIN, MAP_BEGINS,
-    "separator = \"",
-];
+/// What documents, layouts and settings begin with that this program wrote.
+const OWN_TEXTS: [&str; 5] =
+    ["{\n  \"format\": \"hydrotrace.", "{\n  \"configById\": {", LIMITS_BEGIN, MAP_BEGINS, "separator = \""];
+/// What its figures and manual pages hold near their beginning.
+const OWN_PARTS: [[&str; 2]; 2] = [["<svg xmlns", "stroke-linejoin=\"round\">"], [".ie ", ".TH hydrotrace"]];
+/// The last line of a text that the program wrote to a file, which has no other mark; in Markdown within a comment.
+pub const WRITTEN: &str = "Written by hydrotrace.";
+/// Bytes of the end of a text that hold it.
+const LAST_LINE: u64 = 64;
+/// What pictures of points and recordings of the viewer begin with: whose they are nothing tells.
+const ANYBODYS: [&[u8]; 2] = [b"\x89PNG", b"RRF"];
 /// The first line of limits.
 const LIMITS_BEGIN: &str = "# What a machine does with what it is sent, as `hydrotrace fit` found it";
 const TIMES: [&str; 4] = ["\"t\"", "\"time", "time\"", "stamp\""];
-const SETTINGS: [&str; 4] = ["toml", "json", "yaml", "yml"];
 
 /// What a file holds. Its name is not remembered as that of an input. A pipe, which is there once, is not looked into.
 ///
@@ -103,8 +108,14 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
         let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         return Ok(Contents::Table(String::from_utf8_lossy(line).into_owned()));
     }
-    let settings = SETTINGS.iter().any(|one| is_named(path, one)) && !bytes.is_empty();
-    Ok(if settings && !is_own(&start) { Contents::Settings } else { Contents::Other })
+    let anybodys = bytes.is_empty() || ANYBODYS.iter().any(|begins| bytes.starts_with(begins));
+    let own = anybodys || is_own(&start) || {
+        let end = source.length();
+        source.read(Span { start: end.saturating_sub(LAST_LINE), end }, &mut bytes)?;
+        let last = String::from_utf8_lossy(&bytes);
+        last.trim_end().trim_end_matches("-->").trim_end().ends_with(WRITTEN)
+    };
+    Ok(if own { Contents::Other } else { Contents::Foreign })
 }
 
 /// Whether a file holds words or a document, which tables of cells are not told from by their separators alone: Markdown that
@@ -116,6 +127,7 @@ fn is_text(path: &Path, start: &str) -> bool {
 
 fn is_own(start: &str) -> bool {
     OWN_TEXTS.iter().any(|text| start.starts_with(text))
+        || OWN_PARTS.iter().any(|[begins, holds]| start.starts_with(begins) && start.contains(holds))
 }
 
 fn is_named(path: &Path, ending: &str) -> bool {

@@ -37,7 +37,7 @@ mod source;
 mod write;
 
 pub use bag::recording_files;
-pub use contents::{Contents, contents};
+pub use contents::{Contents, WRITTEN, contents};
 pub use csv::{
     AngleUnit, ColumnRead, Columns, CsvError, CsvOptions, CsvRun, JsonLines, LengthUnit, Quantity, Separator,
     TableStream, TimeRead, UNDATED_NS, Understood, is_aside, is_dated, is_header, other_header,

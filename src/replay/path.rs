@@ -138,8 +138,8 @@ impl Path {
             self.planned_rad.iter().enumerate().any(fast)
         };
         let goes_on = |to: usize| self.connected.get(to).is_some_and(|connected| *connected);
-        let before = i > at && !self.connected[at] && goes_on(at + 1) && moves(at);
-        let after = i < at && self.connected[at] && !goes_on(at + 1) && moves(at - 1);
+        let before = i >= at && !self.connected[at] && goes_on(at + 1) && moves(at);
+        let after = i <= at && self.connected[at] && !goes_on(at + 1) && moves(at - 1);
         share <= 0.0 && (before || after)
     }
 
@@ -211,6 +211,14 @@ mod tests {
             path_error(&[&pair(500, 0.213, 0.0), &pair(500, 0.213, 0.0)], &Rules::default()).unwrap();
         assert!(norm.timed_rms > 0.05);
         assert!(norm.peak < 1e-12 && joints.iter().all(|j| j.peak < 1e-12), "{norm:?}");
+    }
+
+    #[test]
+    fn a_measurement_that_begins_in_motion_is_not_off_the_path_by_its_lag() {
+        let moving = |late_s: f64| Track::sampled("a", 500, |t| 0.5 * (t + 1.0 - late_s));
+        let pair = align(&moving(0.0), &moving(0.213)).unwrap();
+        let (_, norm) = path_error(&[&pair, &pair], &Rules::default()).unwrap();
+        assert!(norm.timed_rms > 0.05 && norm.peak < 1e-12, "{norm:?}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::{DirectionDelay, JointReplay, Kind, Replay, Sizes, TrackingError, Transition};
 use crate::math::median;
 
-/// A joint stays off its plan at rest from so many bands of settling on: 0.5 deg, 5 mm.
+/// A joint stays off its plan at rest from so many bands of settling on: 0.5 deg, 10 mm.
 const STAYS_OFF: f64 = 5.0;
 
 /// Share of the intervals of single starts that may be alike for all starts of a direction.

@@ -126,11 +126,13 @@ fn said_last(trend: &JointTrend) -> String {
 pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
     let found: Vec<&JointTrend> = drift.trends.iter().filter(|trend| trend.found).collect();
     let of = format!("{} of {}", counted(drift.runs, "run"), counted(drift.machines, "machine"));
+    let judged = drift.judged();
     let first = match (found.len(), drift.trends.len()) {
         (_, 0) => format!(
             "{of}: no joint has five runs of one plan, begun at different times, which a trend takes."
         ),
-        (0, all) => format!("{of}: no drift and no step found among {}.", counted(all, "trend")),
+        (0, all) if judged == 0 => format!("{of}: nothing could be judged of {}.", counted(all, "trend")),
+        (0, _) => format!("{of}: no drift and no step found among {}.", counted(judged, "trend")),
         (some, all) => format!("{of}: {some} of {} found.", counted(all, "trend")),
     };
     // What is found is never left out.
@@ -153,8 +155,7 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
              joints of a machine change alike, that may be why.",
         ));
     }
-    let unsure = drift.trends.iter().filter(|trend| !trend.found && trend.runs < drift.fewest_runs).count();
-    section = section.with_all(not_judged(drift.too_few + unsure, drift.fewest_runs));
+    section = section.with_all(not_judged(drift.too_few + drift.trends.len() - judged, drift.fewest_runs));
     Document::default().with(section).remarked(&drift.remarks)
 }
 

@@ -24,6 +24,7 @@ pub(crate) fn drift_page(drift: &Drift) -> String {
     let mut plots = Plots::default();
     let found: Vec<&JointTrend> = drift.trends.iter().filter(|trend| trend.found).collect();
     let headline = match found.len() {
+        0 if drift.judged() == 0 => "Nothing to judge".to_owned(),
         0 => "No drift found".to_owned(),
         some => format!("{} found", counted(some, "drift")),
     };

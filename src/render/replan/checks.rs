@@ -1,5 +1,7 @@
 //! "Safe to send?" in words.
 
+use std::iter;
+
 use crate::{
     fit::{Character, LEAST_SKILL, SharedLimit},
     plan::Limit,
@@ -11,7 +13,7 @@ use crate::{
     },
     workflow::{
         plan::MarginEntry,
-        replan::{self, Checks, Finding, JointTrust, Level, Outside, Reason, TooFast, Verdict},
+        replan::{self, Checks, Finding, JointTrust, Left, Level, Outside, Reason, TooFast, Verdict},
     },
 };
 
@@ -68,6 +70,9 @@ fn short(level: Level, finding: &Finding) -> String {
             format!("{} broken", counted(*broken, "limit"))
         }
         Finding::Limits { nearest, .. } if nearest.is_empty() => "the limits are unknown".to_owned(),
+        Finding::Limits { steep: Some(of), .. } => {
+            format!("{} goes beyond its limit of acceleration", of.joint)
+        }
         Finding::Limits { .. } => "a controller's curve goes a little beyond a limit".to_owned(),
         Finding::Trust { joints } => {
             let doubtful =
@@ -143,12 +148,35 @@ fn words(level: Level, finding: &Finding, units: Units) -> String {
                 acceleration_rad_s2.map_or(String::new(), |a| format!(", acceleration {}/s2", shown(a)));
             format!("{start}: speed {}/s{acceleration}.", shown(*speed_rad_s))
         }
-        Finding::Limits { broken, between, nearest, unlimited, fastest, sharpest, outside } => {
-            let none: Vec<&str> = unlimited.iter().map(|limit| limit.name()).collect();
-            let none = match (none.is_empty(), nearest.is_empty()) {
+        Finding::Limits {
+            broken,
+            between,
+            nearest,
+            unlimited,
+            unchecked,
+            steep,
+            fastest,
+            sharpest,
+            outside,
+        } => {
+            let names = |of: &[Limit]| of.iter().map(|limit| limit.name()).collect::<Vec<_>>().join(", ");
+            let steep = steep.as_ref().map_or(String::new(), |of| {
+                let [own, most] =
+                    [of.acceleration_rad_s2, of.limit_rad_s2].map(|value| position(of.kind, value));
+                format!(
+                    " By its samples {} is accelerated to about {own}/s2, and its limit is {most}/s2.",
+                    of.joint
+                )
+            });
+            let by_samples = if unchecked.is_empty() {
+                String::new()
+            } else {
+                format!(" Not checked, for the plan is known by its samples alone: {}.", names(unchecked))
+            };
+            let none = match (unlimited.is_empty(), nearest.is_empty()) {
                 (true, _) => String::new(),
-                (false, true) => format!(" Not checked: {}.", none.join(", ")),
-                (false, false) => format!(" No limit is known of: {}.", none.join(", ")),
+                (false, true) => format!(" Not checked: {}.", names(unlimited)),
+                (false, false) => format!(" No limit is known of: {}.", names(unlimited)),
             };
             let fast = fastest.as_ref().map_or(String::new(), |fast| {
                 format!(
@@ -161,7 +189,13 @@ fn words(level: Level, finding: &Finding, units: Units) -> String {
             let sharp = sharpest.as_ref().map_or(String::new(), |sharp| {
                 format!(" {} is accelerated up to {:.1} times as much as its plan.", sharp.joint, sharp.ratio)
             });
-            limits([*broken, *between], nearest) + &fast + &sharp + &beyond(outside) + &none
+            limits([*broken, *between], nearest)
+                + &steep
+                + &fast
+                + &sharp
+                + &beyond(outside)
+                + &by_samples
+                + &none
         }
         Finding::TooFast(TooFast { joint, kind, planned_rad_s, limit_rad_s: [own, most], also }) => format!(
             "The plan of {joint} goes up to {}/s, and the joint was found to make {}/s, {}/s at most, in the runs of the fit{}: no command \
@@ -200,16 +234,17 @@ fn words(level: Level, finding: &Finding, units: Units) -> String {
             shown(overall.plain_p95_rad),
             if good { "" } else { ": the correction gains at starts and loses more elsewhere" }
         ),
-        Finding::Leave { joint, kind, distance_rad, t_s, tool_m } => {
+        Finding::Leave { farthest, also, tool_m } => {
             let tool = tool_m.map_or(String::new(), |m| format!(", up to {} mm at the tool", mm(m)));
             let advice = match level {
                 Level::Stop => "send less of it (--gain 0.5), or a slower plan",
                 Level::Good | Level::Caution => "keep that room free",
             };
-            format!(
-                "It leaves the plan by up to {} ({joint} at {t_s:.1} s){tool}: {advice}.",
-                position(*kind, *distance_rad)
-            )
+            let one = |left: &Left| {
+                format!("{} ({} at {:.1} s)", position(left.kind, left.distance_rad), left.joint, left.t_s)
+            };
+            let far: Vec<String> = iter::once(farthest).chain(also).map(one).collect();
+            format!("It leaves the plan by up to {}{tool}: {advice}.", far.join(" and "))
         }
         Finding::Gain { gain, reasons } => {
             let sent = share(*gain);

@@ -99,7 +99,13 @@ impl<'a> Together<'a> {
         if let Some(c) = &self.run.concentration {
             let place = match (&mostly, c.verdict) {
                 (Some(_), Verdict::Transitions) => "Transitions hold it because the joints move there",
+                (None, Verdict::Transitions) if c.squared_error_share_inside < 0.5 => {
+                    "The error is larger in the transitions than elsewhere"
+                }
                 (None, Verdict::Transitions) => "Most of the error arises in the transitions",
+                (_, Verdict::Elsewhere) if c.squared_error_share_inside > 0.5 => {
+                    "The error is larger outside the transitions than in them"
+                }
                 (_, Verdict::Elsewhere) => "Most of the error arises outside the transitions",
                 (_, Verdict::Undecided) => {
                     "Whether most of the error arises in the transitions cannot be told"

@@ -30,17 +30,9 @@ pub fn worth(path: &Path) -> Option<String> {
         Contents::Table(_) => Some("a table that this program did not write".to_owned()),
         Contents::Page(head) if head.contains(OWN_PAGE) => None,
         Contents::Page(_) => Some("a page that this program did not write".to_owned()),
-        Contents::Settings => Some("a file that this program did not write".to_owned()),
-        Contents::Other if is_page(path) => Some("no page that this program wrote".to_owned()),
+        Contents::Foreign => Some("a file that this program did not write".to_owned()),
         Contents::Other => None,
     }
-}
-
-/// Whether a file is called a page; an empty one is none.
-fn is_page(path: &Path) -> bool {
-    let named =
-        path.extension().is_some_and(|end| ["html", "htm"].iter().any(|one| end.eq_ignore_ascii_case(one)));
-    named && std::fs::metadata(path).is_ok_and(|file| file.len() > 0)
 }
 
 /// Whether no topic is of a run or a command.

@@ -125,6 +125,9 @@ fn sharpest_rad_s2(track: &Track) -> f64 {
     fastest_rad_s(track) / RAMP_S
 }
 
+/// What is sent at a limit lies beyond it by less.
+const ROUNDING: f64 = 1e-9;
+
 /// Joints that are sent beyond one of their limits: of speed, acceleration, jerk.
 fn beyond(
     setup: &Setup,
@@ -136,7 +139,7 @@ fn beyond(
         let most = *setup.joint_limits(j)?.1.get(limit)?;
         let track = command.track(&name)?;
         let sent = sent(track);
-        (sent > most).then_some((name, track.kind(), [sent, most]))
+        (sent > (1.0 + ROUNDING) * most).then_some((name, track.kind(), [sent, most]))
     };
     setup.joint_names().into_iter().enumerate().filter_map(of_joint).collect()
 }

@@ -63,6 +63,13 @@ pub struct Drift {
     pub remarks: Remarks,
 }
 
+impl Drift {
+    /// Trends that have runs enough to be found, or not to be there.
+    pub fn judged(&self) -> usize {
+        self.trends.iter().filter(|trend| trend.found || trend.runs >= self.fewest_runs).count()
+    }
+}
+
 /// The trends of what the filter lets through, judged against the whole fleet; `by`: of one metric only.
 ///
 /// # Errors

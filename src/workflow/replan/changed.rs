@@ -377,8 +377,7 @@ mod tests {
             let by = [1.0, 1.2, 1.3, 1.4, 1.3];
             history.series = by.iter().map(|by| (sent(*by), sent(0.0))).collect();
             history.places = (0..5).collect();
-            history.runs[4].promised =
-                Some(Promise { mean_peak_rad: 0.01, mean_peak_margin_rad: promised_rad });
+            history.runs[4].promised = Some(Promise::new([0.01, promised_rad], None));
             let (others, _) = history.without_another_machine(&mut |_| None);
             (others.len(), history.drifts, history.anew(), history.trust(), history.decision())
         };

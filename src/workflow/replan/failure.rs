@@ -63,6 +63,11 @@ pub enum ReplanFailure {
     )]
     OtherArm { path: PathBuf, task: String, log: String },
     #[error(
+        "the task in {} is for the joints {task}, and only {log} is read: leave out --joints, or keep the plan with --keep-plan",
+        path.display()
+    )]
+    SomeJoints { path: PathBuf, task: String, log: String },
+    #[error(
         "no joint is predicted well enough for a command: the best held-out R2 is {best:.2}, {least} is needed; {why}"
     )]
     Unpredictable { best: f64, least: f64, why: Unclear },

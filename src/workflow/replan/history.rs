@@ -378,8 +378,7 @@ pub(super) mod tests {
     #[test]
     fn a_broken_promise_lowers_the_gain_and_a_kept_one_does_not() {
         let trust = |promised: Option<f64>, came: f64, corrected: bool| {
-            let promised =
-                promised.map(|margin| Promise { mean_peak_rad: 0.5 * margin, mean_peak_margin_rad: margin });
+            let promised = promised.map(|margin| Promise::new([0.5 * margin, margin], None));
             let mut history = history(&[came]);
             history.runs[0].promised = promised;
             history.runs[0].corrected = corrected;

@@ -60,12 +60,14 @@ impl Last {
         let carried = Carried::of(recording).of_plan();
         let request = match (&inputs.task, carried.task_files()) {
             (Some(task), _) => Some(PlanRequest::read(task)?),
-            (None, Some(files)) => Some(PlanRequest::of(path, files)?),
+            // A command for some of the arm's joints alone takes nothing from its task.
+            (None, Some(files)) => Some(PlanRequest::of(path, files)?)
+                .filter(|request| !inputs.keep_plan || has_joints(request, planned)),
             (None, None) => None,
         };
         let mut elsewhere = Vec::new();
         if let Some(request) = &request {
-            check_joints(path, request, planned)?;
+            check_joints(path, request, planned, inputs.task.is_none())?;
             if inputs.task.is_some() {
                 elsewhere = check_points(path, request, planned, [from_s, to_s])?;
             }
@@ -205,14 +207,28 @@ fn whole(path: &Path, what: &'static str, broken: Option<Broken>) -> Result<(), 
     broken.map_or(Ok(()), |broken| Err(ReplanFailure::Broken { path, what, broken }))
 }
 
-/// The task's joints must be in the log, or its timing would be judged on joints that nobody measured.
-fn check_joints(path: &Path, request: &PlanRequest, planned: &Series) -> Result<(), ReplanFailure> {
-    let task = request.setup.joint_names();
-    if task.iter().all(|name| planned.track(name).is_some()) {
+fn has_joints(request: &PlanRequest, planned: &Series) -> bool {
+    request.setup.joint_names().iter().all(|name| planned.track(name).is_some())
+}
+
+/// The task's joints must be in the log, or its timing would be judged on joints that nobody measured; `own`: the task is the log's.
+fn check_joints(
+    path: &Path,
+    request: &PlanRequest,
+    planned: &Series,
+    own: bool,
+) -> Result<(), ReplanFailure> {
+    if has_joints(request, planned) {
         return Ok(());
     }
     let log: Vec<&str> = planned.tracks.iter().map(Track::name).collect();
-    Err(ReplanFailure::OtherArm { path: path.to_owned(), task: task.join(", "), log: log.join(", ") })
+    let [task, log] = [request.setup.joint_names().join(", "), log.join(", ")];
+    let path = path.to_owned();
+    Err(if own {
+        ReplanFailure::SomeJoints { path, task, log }
+    } else {
+        ReplanFailure::OtherArm { path, task, log }
+    })
 }
 
 /// Where the controller takes trajectories whose state, or whose last trajectory, the plan was read from.

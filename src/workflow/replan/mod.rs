@@ -36,7 +36,8 @@ mod warp;
 use std::ops::ControlFlow;
 
 pub use checks::{
-    Check, Checks, Fastest, Finding, JointTrust, Level, Outside, Reason, Sharpest, TooFast, Verdict,
+    Check, Checks, Fastest, Finding, JointTrust, Left, Level, Outside, Reason, Sharpest, Steep, TooFast,
+    Verdict,
 };
 pub use command::{Commanded, JointCommand};
 pub use course::{Drawn, JointCourse, courses};

@@ -323,10 +323,10 @@ impl Replanned {
 
     /// What is expected of the next run.
     pub fn promise(&self) -> Promise {
-        Promise {
-            mean_peak_rad: self.after.mean_peak_rad,
-            mean_peak_margin_rad: self.after.mean_peak_margin_rad,
-        }
+        Promise::new(
+            [self.after.mean_peak_rad, self.after.mean_peak_margin_rad],
+            Some(self.after.transitions.len()),
+        )
     }
 
     /// The bytes of the log: plan and command as channels of their own, and the task with the new plan.

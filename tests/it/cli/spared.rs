@@ -235,3 +235,44 @@ fn a_writer_by_name_replaces_the_file_when_it_is_done_and_not_when_it_fails() {
     assert_eq!(fs::read_to_string(&target).unwrap(), "new");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
+
+#[test]
+fn a_file_of_another_program_is_kept_whatever_its_name_and_an_own_one_is_replaced() {
+    let folder = scratch();
+    let path = folder.path();
+    fs::copy(sample("task-1-run.mcap"), path.join("run.mcap")).unwrap();
+    fs::copy(sample("precompensated-run.mcap"), path.join("other.mcap")).unwrap();
+    fs::create_dir(path.join("drawn")).unwrap();
+    let foreign = [
+        ("report run.mcap -o notes.txt", "notes.txt", "Oil changed on Monday.\n"),
+        ("report run.mcap -o README.md", "README.md", "# Machine 3\n\nOil changed on Monday.\n"),
+        ("report run.mcap -o analysis.py", "analysis.py", "print(1)\n"),
+        ("export run.mcap --csv -o log", "log", "first line\nsecond\n"),
+        ("fit run.mcap -o limits.txt", "limits.txt", "12 bar\n"),
+        ("export run.mcap -o cut.mcap", "cut.mcap", "\u{89}MCAP"),
+        (
+            "report run.mcap --figures drawn",
+            "drawn/lag.svg",
+            "<svg xmlns=\"http://www.w3.org/2000/svg\"><title/></svg>\n",
+        ),
+    ];
+    for (line, file, text) in foreign {
+        fs::write(path.join(file), text).unwrap();
+        let (code, _, error) = said(&run_line(path, line));
+        assert!(
+            code == 1 && error.contains("a file that this program did not write"),
+            "{line}: {code} {error}"
+        );
+        assert_eq!(fs::read_to_string(path.join(file)).unwrap(), text, "{line}");
+        fs::remove_file(path.join(file)).unwrap();
+    }
+    for line in [
+        "report run.mcap -o own.txt", "compare run.mcap other.mcap -o own.md",
+        "report run.mcap --figures drawn",
+    ] {
+        for _ in 0..2 {
+            let (code, _, error) = said(&run_line(path, line));
+            assert_eq!(code, 0, "{line}: {error}");
+        }
+    }
+}

@@ -102,6 +102,47 @@ fn a_crane_with_a_telescope_is_planned_run_and_better_for_its_next_command() {
 }
 
 #[test]
+fn a_task_that_no_log_holds_is_checked_as_far_as_samples_tell_and_goes_with_the_next_line() {
+    let folder = crane("", "");
+    let folder = folder.path();
+    let task = fs::read_to_string(folder.join("lift.toml")).unwrap();
+    let from = "acceleration_deg_s2 = { slew = 25";
+    assert!(task.contains(from), "{task}");
+    fs::write(folder.join("tight.toml"), task.replace(from, "acceleration_deg_s2 = { slew = 0.5")).unwrap();
+    clean(folder, "plan lift.toml --times 0,9,18 -o plan.mcap");
+    driven(folder, "plan.mcap", "run.csv");
+    // A table holds neither task nor motion.
+    let (_, next, error) =
+        said(&run_line(folder, "replan run.csv --keep-plan --task tight.toml -o next.mcap"));
+    for part in [
+        "CARE  Limits",
+        "By its samples slew is accelerated to about ",
+        "its limit is 0.500 deg/s2",
+        "Not checked, for the plan is known by its samples alone: acceleration, jerk",
+        "mm (telescope at ",
+        "deg (slew at ",
+        "replan run.csv after.mcap --task tight.toml --keep-plan",
+    ] {
+        assert!(next.contains(part), "{part}: {next}{error}");
+    }
+    assert!(!next.contains("No limit is known of: acceleration"), "{next}");
+}
+
+#[test]
+fn a_command_for_some_joints_takes_nothing_from_the_task_of_all() {
+    let folder = crane("", "");
+    let folder = folder.path();
+    clean(folder, "plan lift.toml --times 0,9,18 -o plan.mcap");
+    driven(folder, "plan.mcap", "run.csv");
+    clean(folder, "join run.csv --plan plan.mcap -o run.mcap");
+    let line = "replan run.mcap --joints boom -o next.mcap";
+    let (code, _, error) = said(&run_line(folder, line));
+    assert!(code == 1 && error.contains("leave out --joints, or keep the plan with --keep-plan"), "{error}");
+    let (code, next, error) = said(&run_line(folder, &format!("{line} --keep-plan")));
+    assert!(code != 1 && next.contains("Without a task the limits of the arm are unknown"), "{next}{error}");
+}
+
+#[test]
 fn its_identification_run_has_strokes_in_millimetres() {
     let folder = crane("", "");
     let said_of = clean(folder.path(), "excite --task lift.toml -o id.mcap");

@@ -2,14 +2,15 @@
 
 use super::super::outcome::CAREFUL;
 use super::{
-    Check, Fastest, Finding, JointTrust, Level, Outside, Overall, Reason, Replanned, Sharpest, TooFast,
+    Check, Fastest, Finding, JointTrust, Left, Level, Outside, Overall, Reason, Replanned, Sharpest, Steep,
+    TooFast,
 };
 use crate::{
     fit::{Character, JointFit, LEAST_SKILL, Step, TRAVELS_RAD},
     math::range,
-    plan::{BETWEEN, Limit, Margin},
+    plan::{BETWEEN, Limit, Margin, Setup},
     remark::Code,
-    series::{Series, Track},
+    series::{JointKind, Series, Track},
     units::DEGREE_RAD,
     workflow::{
         plan::MarginEntry,
@@ -118,15 +119,41 @@ fn limits(replanned: &Replanned, command: Option<&Commanded>) -> Check {
         }
     }
     let known = |limit: &Limit| kinds.iter().any(|margin| margin.limit == *limit);
-    let unlimited = Limit::OF_JOINT.into_iter().chain(Limit::OF_ARM).filter(|limit| !known(limit)).collect();
-    let names = replanned.request.as_ref().map_or_else(Vec::new, |request| request.setup.joint_names());
-    let level = if broken > 0 { Level::Stop } else { caution(between > 0 || all.is_empty()) };
+    let (names, setup) = replanned
+        .request
+        .as_ref()
+        .map_or_else(Default::default, |request| (request.setup.joint_names(), Some(&request.setup)));
+    let missing = Limit::OF_JOINT.into_iter().chain(Limit::OF_ARM).filter(|limit| !known(limit));
+    let (unchecked, unlimited): (Vec<Limit>, Vec<Limit>) =
+        missing.partition(|limit| setup.is_some_and(|setup| setup.is_limited(*limit)));
+    let by_samples = command.zip(setup).filter(|_| unchecked.contains(&Limit::Acceleration));
+    let steep = by_samples.and_then(|(command, setup)| steep(command, setup));
+    let doubted = between > 0 || all.is_empty() || steep.is_some();
+    let level = if broken > 0 { Level::Stop } else { caution(doubted) };
     let nearest = MarginEntry::all(&kinds, &names);
     let unknown = command.filter(|_| all.is_empty());
     let (fastest, sharpest) = (unknown.and_then(fastest), unknown.and_then(sharpest));
     let outside = unknown.map_or_else(Vec::new, |command| outside(replanned, command));
-    let finding = Finding::Limits { broken, between, nearest, unlimited, fastest, sharpest, outside };
+    let finding =
+        Finding::Limits { broken, between, nearest, unlimited, unchecked, steep, fastest, sharpest, outside };
     Check { level, finding }
+}
+
+/// Accelerations by samples that are beyond a limit by more than this share are.
+const ABOUT: f64 = 0.2;
+
+/// The joint that is accelerated beyond its limit by most, by the samples of command and plan.
+fn steep(command: &Commanded, setup: &Setup) -> Option<Steep> {
+    let own = |(track, sent): (&Track, &Vec<f64>)| {
+        let joint = setup.joint_names().iter().position(|name| name == track.name())?;
+        let acceleration_rad_s2 = sent.iter().fold(0.0, |most: f64, one| most.max(one.abs()));
+        let limit_rad_s2 = setup.joint_limits(joint)?.1[1];
+        let (joint, kind) = (track.name().to_owned(), track.kind());
+        Some(Steep { joint, kind, acceleration_rad_s2, limit_rad_s2 })
+    };
+    let ratio = |of: &Steep| of.acceleration_rad_s2 / of.limit_rad_s2;
+    let all = command.series.tracks.iter().zip(&command.acceleration_rad_s2).filter_map(own);
+    all.filter(|of| ratio(of) > 1.0 + ABOUT).max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
 }
 
 /// A joint that is accelerated more than its plan by this factor is told where limits are unknown.
@@ -309,21 +336,25 @@ fn whole(replanned: &Replanned) -> Option<Check> {
 /// `None` where the command is the plan.
 fn leave(replanned: &Replanned, command: Option<&Commanded>) -> Option<Check> {
     let (plan, sent) = (&replanned.plan, &command?.series);
-    let mut farthest: Option<(f64, &Track, f64)> = None;
+    let mut joints: Vec<Left> = Vec::new();
     for track in &plan.tracks {
         let Some(sent) = sent.track(track.name()) else { continue };
-        for (t_s, position) in sent.t_s().iter().zip(sent.position()) {
-            let distance_rad = (position - track.held_at(*t_s).position).abs();
-            if farthest.is_none_or(|(most_rad, ..)| distance_rad > most_rad) {
-                farthest = Some((distance_rad, track, *t_s));
-            }
+        let far = |(t_s, position): (&f64, &f64)| ((position - track.held_at(*t_s).position).abs(), *t_s);
+        let farthest = sent.t_s().iter().zip(sent.position()).map(far).max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((distance_rad, t_s)) = farthest else { continue };
+        let found = Left { joint: track.name().to_owned(), kind: track.kind(), distance_rad, t_s };
+        match joints.iter_mut().find(|other| other.kind == found.kind) {
+            Some(other) if other.distance_rad >= distance_rad => {}
+            Some(other) => *other = found,
+            None => joints.push(found),
         }
     }
-    let (distance_rad, track, t_s) = farthest?;
     let tool_m = tool_m(replanned, sent);
-    let wide = distance_rad > WIDE.0 || tool_m.is_some_and(|tool_m| tool_m > WIDE.1);
-    let finding =
-        Finding::Leave { joint: track.name().to_owned(), kind: track.kind(), distance_rad, t_s, tool_m };
+    let most = |kind| if kind == JointKind::Slides { WIDE.1 } else { WIDE.0 };
+    let wide = joints.iter().any(|left| left.distance_rad > most(left.kind))
+        || tool_m.is_some_and(|tool_m| tool_m > WIDE.1);
+    let mut joints = joints.into_iter();
+    let finding = Finding::Leave { farthest: joints.next()?, also: joints.next(), tool_m };
     let elsewhere = tool_m.is_some_and(|tool_m| tool_m > ELSEWHERE_M);
     Some(Check { level: if elsewhere { Level::Stop } else { caution(wide) }, finding })
 }

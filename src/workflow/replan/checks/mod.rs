@@ -91,6 +91,12 @@ pub enum Finding {
         nearest: Vec<MarginEntry>,
         /// Kinds that have no limit.
         unlimited: Vec<Limit>,
+        /// Kinds that have one and are not checked: samples of a plan tell neither its acceleration exactly nor what it takes.
+        #[serde(default)]
+        unchecked: Vec<Limit>,
+        /// The joint that goes beyond its limit of acceleration by most, as far as samples tell.
+        #[serde(default)]
+        steep: Option<Steep>,
         /// Without a task: the joint that is sent faster than its plan by most, if it is by half or more.
         #[serde(default)]
         fastest: Option<Fastest>,
@@ -146,15 +152,12 @@ pub enum Finding {
     },
     /// Where the command leaves its plan most.
     Leave {
-        /// The joint.
-        joint: String,
-        /// Whether it turns or slides.
+        /// The joint that does so by most.
+        #[serde(flatten)]
+        farthest: Left,
+        /// The same of the joints of the other kind, where some turn and some slide.
         #[serde(default)]
-        kind: JointKind,
-        /// By how much, rad.
-        distance_rad: f64,
-        /// When, s.
-        t_s: f64,
+        also: Option<Left>,
         /// Largest distance of the tool from its plan, m; null without a task.
         tool_m: Option<f64>,
     },
@@ -206,6 +209,35 @@ pub struct Sharpest {
     pub joint: String,
     /// Its largest acceleration by that of its plan.
     pub ratio: f64,
+}
+
+/// A joint that leaves its plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Left {
+    /// The joint.
+    pub joint: String,
+    /// Whether it turns or slides.
+    #[serde(default)]
+    pub kind: JointKind,
+    /// By how much, rad, m of a joint that slides.
+    pub distance_rad: f64,
+    /// When, s.
+    pub t_s: f64,
+}
+
+/// A joint whose samples go beyond its limit of acceleration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Steep {
+    /// The joint.
+    pub joint: String,
+    /// Whether it turns or slides.
+    pub kind: JointKind,
+    /// About what it is accelerated to, rad/s², m/s² of a joint that slides.
+    pub acceleration_rad_s2: f64,
+    /// Its limit.
+    pub limit_rad_s2: f64,
 }
 
 /// A joint that is sent beyond the range of its plan.
