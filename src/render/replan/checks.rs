@@ -38,9 +38,10 @@ pub(super) fn verdict(checks: &Checks) -> String {
         checks.at(level).map(|check| short(level, &check.finding)).collect::<Vec<_>>().join("; ")
     };
     match checks.verdict {
-        Verdict::Send if changes_little(checks) => format!(
-            "It may be sent, all {} checks are good; but hardly less error is expected than last time.",
-            checks.list.len()
+        Verdict::Send if growth(checks) > WORTH_SENDING => format!(
+            "It may be sent, all {} checks are good; but {} error is expected than last time.",
+            checks.list.len(),
+            if growth(checks) > 1.0 { "more" } else { "hardly less" }
         ),
         Verdict::Send => format!("Yes, send it: all {} checks are good.", checks.list.len()),
         Verdict::HalfFirst => format!("Send half of the correction first: {}.", why(Level::Caution)),
@@ -52,13 +53,15 @@ pub(super) fn verdict(checks: &Checks) -> String {
 /// Less is no reason to send another command.
 const WORTH_SENDING: f64 = 0.98;
 
-fn changes_little(checks: &Checks) -> bool {
-    checks.list.iter().any(|check| match check.finding {
+/// The error that is expected by the last one.
+fn growth(checks: &Checks) -> f64 {
+    let of = |check: &replan::Check| match check.finding {
         Finding::Outlook { last_mean_peak_rad: Some(last_rad), expected } => {
-            expected.mean_peak_rad > WORTH_SENDING * last_rad
+            Some(expected.mean_peak_rad / last_rad)
         }
-        _ => false,
-    })
+        _ => None,
+    };
+    checks.list.iter().find_map(of).unwrap_or_default()
 }
 
 /// What speaks against sending, in a few words.

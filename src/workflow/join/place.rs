@@ -6,7 +6,7 @@ use super::{JoinFailure, gain::other_share};
 use crate::{
     log::{ReadOptions, SignalRole, WantedSignal, read_plan},
     remark::{Code, Remarks},
-    series::{Located, Series, Track, left_at, locate},
+    series::{Located, Series, Track, left_at, locate, moving_s},
     workflow::carried::Carried,
 };
 
@@ -18,6 +18,9 @@ const ELSEWHERE: f64 = 0.3;
 const CLEARLY: f64 = 0.5;
 /// Largest difference, as a share, at which the sent signal is taken to be the planned one.
 const SAME: f64 = 0.01;
+
+/// A recording that lacks less of a motion lacks a sample or two, s.
+const LACKS_S: f64 = 0.1;
 
 /// A plan and its command, on the plan's clock.
 pub(super) struct Plan {
@@ -84,10 +87,27 @@ impl Plan {
                 100.0 * found.covered
             );
             remarks.add(Code::Unmatched, 1, doubt);
+        } else if let Some(doubt) = self.cut(sent, found.at_s, topic) {
+            remarks.add(Code::Unmatched, 1, doubt);
         }
         let message = "other places fit as well, the first is taken; --at SECONDS names another";
         remarks.add(Code::Ambiguous, found.others as u64, message);
         Ok((commanded, found))
+    }
+
+    /// That the recording lacks the beginning or the end of the plan's motion, whose start is then nowhere.
+    fn cut(&self, sent: &Series, at_s: f64, topic: &str) -> Option<String> {
+        let [first_s, last_s] = moving_s(&self.planned)?.map(|t_s| t_s + at_s);
+        let [from_s, to_s] = sent.span_s()?;
+        let lacks = |s: f64, end: &str| {
+            format!(
+                "{topic} lacks {s:.2} s of the plan's motion at its {end}: what starts there is not judged"
+            )
+        };
+        if from_s - first_s > LACKS_S {
+            return Some(lacks(from_s - first_s, "beginning"));
+        }
+        (last_s - to_s > LACKS_S).then(|| lacks(last_s - to_s, "end"))
     }
 
     /// Whether what was sent beside the plan is the command that was made for it.

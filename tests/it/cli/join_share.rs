@@ -56,3 +56,16 @@ fn what_a_table_calls_its_plan_may_be_what_was_sent() {
     assert!((found / expected - 1.0).abs() < 0.05, "{found} {expected}");
     assert!(joined["promised"].is_object(), "{}", joined["promised"]);
 }
+
+#[test]
+fn a_recording_that_lacks_the_beginning_or_the_end_of_the_plan_is_told() {
+    let folder = folder(&["simulate run.mcap -o whole.mcap"]);
+    let at = folder.path();
+    for (range, end) in [("--from 4", "beginning"), ("--to 22", "end")] {
+        done(at, &format!("export whole.mcap --csv {range} -o part.csv"));
+        let run = hydrotrace(at, "join part.csv --plan plan.mcap -o joined.mcap");
+        let said = stderr(&run);
+        let told = said.contains("of the plan's motion at its ") && said.contains(end);
+        assert!(run.status.code() == Some(3) && told, "{range}: {said}");
+    }
+}
