@@ -4,7 +4,8 @@ use serde_json::{Map, Value};
 
 use super::{
     lenient::parsed,
-    objects::{JsonLines, LISTS, listed},
+    members::{LISTS, listed},
+    objects::JsonLines,
 };
 
 /// Rows of a table at least.

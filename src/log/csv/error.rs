@@ -167,6 +167,13 @@ pub enum CsvError {
         example: String,
         fix: &'static str,
     },
+    #[error(
+        "column {column:?} has single numbers and, in line {line}, {cell}, which is none with a decimal {decimal}: a negative one is expected \
+         to be of one number, such as (1{}5); write a sign, or say --decimal-{}",
+        if *decimal == "comma" { ',' } else { '.' },
+        if *decimal == "comma" { "point" } else { "comma" }
+    )]
+    Parentheses { column: String, line: u64, cell: String, decimal: &'static str },
     #[error("{option} {found}: {expected} is expected")]
     Option { option: &'static str, found: String, expected: &'static str },
     #[error("cannot use the map {}: {reason}", path.display())]
