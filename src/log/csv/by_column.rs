@@ -6,6 +6,7 @@ use super::{
     lenient::parsed,
     members::{LISTS, listed},
     objects::JsonLines,
+    trajectory,
 };
 
 /// Rows of a table at least.
@@ -27,6 +28,9 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
         return None;
     }
     let document: Map<String, Value> = parsed(text)?;
+    if let Some(planned) = trajectory::of(&document) {
+        return trajectory::table(vec![planned]);
+    }
     let joints = joints(&document);
     let rows = split(&document).or_else(|| by_columns(&document)).or_else(|| within(document))?;
     let mut lines = JsonLines::default();

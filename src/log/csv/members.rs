@@ -89,7 +89,16 @@ fn flatten(key: &str, value: &Value, names: Option<&[&str]>, cells: &mut Cells) 
     match value {
         Value::Array(list) if named(list).is_some() => {
             // A list that is called so says no more than its names.
-            let shown = if is_naming(key) { "" } else { key };
+            let shown = match key.rsplit_once('_') {
+                Some((path, last)) if is_naming(last) => path,
+                _ => {
+                    if is_naming(key) {
+                        ""
+                    } else {
+                        key
+                    }
+                }
+            };
             for (name, object) in named(list).into_iter().flatten() {
                 let mut own = Cells::new();
                 flatten_object(shown, object, None, &mut own);
@@ -126,6 +135,8 @@ mod tests {
             let expected = ["arm motors_set", "arm set", "boom motors_set", "boom set"];
             assert_eq!(cells, expected.map(|key| cell(key, if key.starts_with('a') { "2" } else { "1" })));
         }
+        let within = of(r#"{"planned": {"joints": [{"name": "boom", "set": 1}]}}"#);
+        assert!(within.contains(&cell("boom planned_set", "1")), "{within:?}");
         let twice = of(r#"{"q": [{"name": "a", "set": 1}, {"name": "a", "set": 2}]}"#);
         assert!(twice.contains(&cell("q_1_set", "1")), "{twice:?}");
     }

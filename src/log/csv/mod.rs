@@ -69,6 +69,7 @@ mod si;
 mod signals;
 mod spread;
 mod stamp;
+mod started;
 mod stream;
 #[cfg(test)]
 mod tests;
@@ -76,6 +77,7 @@ mod text;
 mod time;
 mod too_fast;
 mod trailing;
+mod trajectory;
 mod typed;
 mod understood;
 mod unit;

@@ -120,12 +120,12 @@ struct Leaf {
 impl Leaf {
     /// Its value in the outermost one.
     fn of<'a>(&self, field: &'a Field) -> &'a Field {
-        self.path.iter().fold(field, within)
+        self.path.iter().fold(field, |field, at| within(field, *at))
     }
 
     /// Its value in an element of a list.
     fn member<'a>(&self, element: &'a Field) -> &'a Field {
-        self.member.as_ref().map_or(element, |(_, at)| within(element, at))
+        self.member.as_ref().map_or(element, |(_, at)| within(element, *at))
     }
 
     fn headers(&self) -> Vec<String> {
@@ -136,9 +136,9 @@ impl Leaf {
 }
 
 /// A value in another by its place.
-fn within<'a>(field: &'a Field, at: &usize) -> &'a Field {
+fn within(field: &Field, at: usize) -> &Field {
     match field {
-        Field::Group(row) => row.get_column_iter().nth(*at).map_or(&Field::Null, |(_, field)| field),
+        Field::Group(row) => row.get_column_iter().nth(at).map_or(&Field::Null, |(_, field)| field),
         _ => &Field::Null,
     }
 }
