@@ -8,6 +8,7 @@ use super::{
     csv::CsvError,
     import_line::Given,
     options::{ReadOptions, TimeBase},
+    unread::with_path,
 };
 use crate::{arm::ArmError, suggest::suggestion, text::shell_argument};
 
@@ -18,8 +19,13 @@ use crate::{arm::ArmError, suggest::suggestion, text::shell_argument};
 pub enum LogError {
     #[error("cannot {action} {}{}", path.display(), meant_as_output(path, source))]
     File { action: &'static str, path: PathBuf, source: std::io::Error },
-    #[error("{} is not an MCAP file: found {found}, expected the bytes 89 4D 43 41 50 30 0D 0A; {fix}", path.display())]
-    NotMcap { path: PathBuf, found: String, fix: &'static str },
+    #[error(
+        "{} is not an MCAP file: found {found}, expected the bytes 89 4D 43 41 50 30 0D 0A; {}{}",
+        path.display(),
+        what.map(|what| format!("it is {what}: ")).unwrap_or_default(),
+        with_path(fix, path)
+    )]
+    NotMcap { path: PathBuf, found: String, what: Option<&'static str>, fix: &'static str },
     #[error("{} {}", path.display(), of_table(path, source, given))]
     Table { path: PathBuf, source: Box<CsvError>, given: Given },
     #[error(transparent)]

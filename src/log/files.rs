@@ -14,6 +14,7 @@ use super::{
     looks::LOOKED_AT,
     options::ReadOptions,
     remote,
+    unread::unread,
 };
 use crate::remark::{Code, Remarks};
 
@@ -248,38 +249,13 @@ pub(super) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// First bytes of other forms, what they are, and how to make a log or a table of them.
-const OTHERS: [(&[u8], &str); 9] = [
-    (
-        b"#ROS",
-        "it is a ROS 1 bag: `pip install rosbags`, then `rosbags-convert --src X.bag --dst X --dst-storage mcap`",
-    ),
-    (
-        b"SQLi",
-        "it is an SQLite bag, which this build does not read: convert it with `ros2 bag convert` to MCAP storage",
-    ),
-    (b"MDF ", "it is an MF4 recording: `pip install asammdf`, then `asammdf` exports its channels as CSV"),
-    (b"ULog", "it is a PX4 ULog: `pip install pyulog`, then `ulog2csv` makes CSV of it"),
-    (b"PK\x03\x04", "it is a spreadsheet or an archive: save the sheet as CSV, or unpack the archive"),
-    (
-        b"MATLAB 5.0 MAT-file",
-        "it is a MATLAB file: `writetimetable` or `writetable` makes CSV of its variables",
-    ),
-    (b"\x89HDF\r\n", "it is an HDF5 file, such as a MATLAB file of version 7.3: export the signals as CSV"),
-    (
-        b"TDSm",
-        "it is a LabVIEW TDMS file: `pip install npTDMS pandas`, then `as_dataframe().to_csv()` makes CSV of it",
-    ),
-    (b"RRF2", "it is a Rerun recording: give the log that it was made of"),
-];
-
 fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
     let start: Vec<String> = bytes.iter().take(8).map(|byte| format!("{byte:02X}")).collect();
-    let known = OTHERS.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, fix)| *fix);
-    let fix = match bytes {
-        [] => "the file is empty",
-        _ => known.unwrap_or("give an .mcap recording or a ROS 2 bag directory"),
+    let (what, fix) = match (bytes, unread(bytes)) {
+        ([], _) => (None, "the file is empty"),
+        (_, Some((what, fix))) => (Some(what), fix),
+        (_, None) => (None, "give an .mcap recording or a ROS 2 bag directory"),
     };
     let found = if start.is_empty() { "nothing".to_owned() } else { start.join(" ") };
-    LogError::NotMcap { path: path.to_owned(), found, fix }
+    LogError::NotMcap { path: path.to_owned(), found, what, fix }
 }

@@ -34,6 +34,7 @@ pub mod remote;
 mod repair;
 mod schema;
 mod source;
+mod unread;
 mod write;
 
 pub use bag::recording_files;

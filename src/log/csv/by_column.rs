@@ -4,7 +4,9 @@ use serde_json::{Map, Value};
 
 use super::{
     lenient::parsed,
-    objects::{JsonLines, LISTS, listed},
+    members::{LISTS, listed},
+    objects::JsonLines,
+    trajectory,
 };
 
 /// Rows of a table at least.
@@ -26,6 +28,9 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
         return None;
     }
     let document: Map<String, Value> = parsed(text)?;
+    if let Some(planned) = trajectory::of(&document) {
+        return trajectory::table(vec![planned]);
+    }
     let joints = joints(&document);
     let rows = split(&document).or_else(|| by_columns(&document)).or_else(|| within(document))?;
     let mut lines = JsonLines::default();

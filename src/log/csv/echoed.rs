@@ -6,7 +6,7 @@ use yaml_rust2::{
     scanner::TScalarStyle,
 };
 
-use super::objects::JsonLines;
+use super::{objects::JsonLines, trajectory};
 
 const BETWEEN: &str = "---";
 
@@ -39,7 +39,7 @@ pub(in crate::log) fn begins(text: &str) -> bool {
 /// A file of messages as the text of a table, a row each; `None` if most of its documents are none.
 pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
     let text = std::str::from_utf8(text).ok().filter(|text| begins(text))?;
-    let mut lines = JsonLines::default();
+    let (mut lines, mut plans) = (JsonLines::default(), Vec::new());
     let (mut all, mut messages) = (0_usize, 0_usize);
     let mut take = |document: &str| {
         let document = without_notes(document);
@@ -48,7 +48,10 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
             // The last one may be cut.
             if let Some(message) = message(document) {
                 messages += 1;
-                lines.gather_object(message);
+                match trajectory::of(&message) {
+                    Some(plan) => plans.push(plan),
+                    None => lines.gather_object(message),
+                }
             }
         }
     };
@@ -61,7 +64,10 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
         at += line.len();
     }
     take(&text[from..]);
-    (2 * messages > all).then(|| lines.table().into_bytes())
+    if 2 * messages <= all {
+        return None;
+    }
+    if plans.len() == messages { trajectory::table(plans) } else { Some(lines.table().into_bytes()) }
 }
 
 /// A list or mapping whose end is yet to come, and the key of the value that comes next.

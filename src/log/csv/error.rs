@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::{
-    log::WriteError,
+    log::{WriteError, unread::with_path},
     suggest::suggestion,
     text::{shell_argument, shell_word},
 };
@@ -17,7 +17,7 @@ use crate::{
 pub enum CsvError {
     #[error("cannot open {}", path.display())]
     File { path: PathBuf, source: std::io::Error },
-    #[error("{file} is no CSV file: {found}; {fix}")]
+    #[error("{file} is no CSV file: {found}; {}", with_path(fix, file))]
     NotText { file: String, found: String, fix: &'static str },
     #[error(
         "found no table of numbers in {file}: {found}; two columns or more are expected; if the cells are \
@@ -167,6 +167,13 @@ pub enum CsvError {
         example: String,
         fix: &'static str,
     },
+    #[error(
+        "column {column:?} has single numbers and, in line {line}, {cell}, which is none with a decimal {decimal}: a negative one is expected \
+         to be of one number, such as (1{}5); write a sign, or say --decimal-{}",
+        if *decimal == "comma" { ',' } else { '.' },
+        if *decimal == "comma" { "point" } else { "comma" }
+    )]
+    Parentheses { column: String, line: u64, cell: String, decimal: &'static str },
     #[error("{option} {found}: {expected} is expected")]
     Option { option: &'static str, found: String, expected: &'static str },
     #[error("cannot use the map {}: {reason}", path.display())]
@@ -176,6 +183,14 @@ pub enum CsvError {
 }
 
 impl CsvError {
+    /// With the path of the file as it was given in the lines to type.
+    pub(in crate::log) fn at(mut self, path: &Path) -> Self {
+        if let Self::AnotherHeader { file, .. } | Self::NotText { file, .. } = &mut self {
+            *file = path.to_string_lossy().into_owned();
+        }
+        self
+    }
+
     /// The options that are missing most likely, and what an import with them does.
     pub(in crate::log) fn missing_options(&self) -> (Vec<String>, &'static str) {
         match self {
@@ -207,7 +222,7 @@ fn two_files(file: &str, line: u64) -> String {
     }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let dot = if ending.is_empty() { "" } else { "." };
-    let part = |number: u32| shell_argument(format!("{stem}-{number}{dot}{ending}"));
+    let part = |number: u32| shell_argument(path.with_file_name(format!("{stem}-{number}{dot}{ending}")));
     let (whole, above) = (shell_argument(path), line.saturating_sub(1));
     format!(", by `head -n {above} {whole} > {}` and `tail -n +{line} {whole} > {}`", part(1), part(2))
 }

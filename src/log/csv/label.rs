@@ -139,7 +139,9 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         && names_place(words)
         && (measure == Some(Measure::Length) || !is_place(&joint) && (long || means(Meaning::Joint)));
     // `q_dot_dot` is an acceleration.
-    let foreign = (means(Meaning::Foreign) || dots > 1) && !place;
+    // Of an angle that is set or measured they are a name: `L-force Achse 1`, `Power arm`.
+    let called = role.is_some() && measure == Some(Measure::Angle) && only_foreign(words, &FORCES);
+    let foreign = (means(Meaning::Foreign) || dots > 1) && !place && !called;
     let is_joint = !timely && fits && !foreign && (strong || role.is_some() || long);
     // Of `q1_m` beside `q1_d` the letter is no metre.
     let whole = self::words(header);
@@ -176,7 +178,15 @@ pub(super) fn is_place(text: &str) -> bool {
 /// Whether letters of space are all that is foreign to a joint. Alone they are of a tool, whose position is told like that of a joint
 /// that slides; `Portal X` and `Achse X` are joints.
 fn names_place(words: &[Word<'_>]) -> bool {
-    words.iter().all(|word| word.meaning != Meaning::Foreign || is_place(word.text))
+    only_foreign(words, &PLACE)
+}
+
+/// Words of forces, of which none is an angle.
+const FORCES: [&str; 6] = ["force", "kraft", "power", "leistung", "torque", "drehmoment"];
+
+fn only_foreign(words: &[Word<'_>], known: &[&str]) -> bool {
+    let is_known = |word: &Word<'_>| known.iter().any(|one| word.text.eq_ignore_ascii_case(one));
+    words.iter().all(|word| word.meaning != Meaning::Foreign || is_known(word))
 }
 
 /// `current_position` is measured now, and so is a current in degrees: it is no electric one.

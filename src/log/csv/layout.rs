@@ -12,10 +12,11 @@ use super::{
     options::option,
     pairing::{
         Draft, Partners, by_last_part, numbered_apart, plan_beside_measured, remark_filtered,
-        without_shared_words, without_speeds,
+        without_filtered, without_shared_words, without_speeds,
     },
     repeats::drop_repeats,
     unit::{Measure, Unit},
+    word::{Meaning, words},
 };
 use crate::{
     remark::{Code, Remarks},
@@ -93,6 +94,7 @@ pub(super) fn lay_out(
     plan_beside_measured(head, &mut drafts, remarks);
     drop_repeats((text, separator), head, labels, &mut drafts, remarks)?;
     without_speeds(head, &mut drafts, |column| explicit.contains(&column), remarks);
+    without_filtered(head, labels, &mut drafts, |column| explicit.contains(&column), remarks);
     without_shared_words(&mut drafts);
     by_last_part(&mut drafts, remarks);
     let joints = joints(head, labels, &drafts, remarks)?;
@@ -247,11 +249,12 @@ fn joints(
                 return Err(CsvError::OddUnit { column: name.clone(), unit: unit.name });
             }
             let speed = drafts.iter().find(|draft| draft.quantity == Quantity::Velocity);
-            let offered = || {
-                offered(&head.names).map_or_else(String::new, |how| format!("; {how}, takes some of them"))
+            let others = || {
+                let how = || offered(&head.names).map(|how| format!("; {how}, takes some of them"));
+                passed_over(head, labels).or_else(how).unwrap_or_default()
             };
             let why = speed
-                .map_or_else(offered, |draft| format!(" (column {:?} is a speed)", head.names[draft.column]));
+                .map_or_else(others, |draft| format!(" (column {:?} is a speed)", head.names[draft.column]));
             return Err(CsvError::NoJoints { why, present: present(&head.names) });
         }
         (true, false) => (&measured, "plan", "--planned"),
@@ -290,6 +293,16 @@ fn joints(
     let message = one_side(&names, labels, missing, flag);
     remarks.add(Code::OneSide, all.len() as u64, message);
     Ok(all.iter().map(pair).collect())
+}
+
+/// Why a column of an angle that is set or measured is of no joint.
+fn passed_over(head: &Head, labels: &[Label]) -> Option<String> {
+    let of_angle = |(_, label): &(&String, &Label)| {
+        !label.is_joint && label.role.is_some() && measures(label, Measure::Angle)
+    };
+    let (name, _) = head.names.iter().zip(labels).find(of_angle)?;
+    let word = words(name).into_iter().find(|word| word.meaning == Meaning::Foreign)?.text;
+    Some(format!(" (column {name:?} is passed over for its word {word:?})"))
 }
 
 /// What a table without a plan, or without a measurement, of these joints needs.

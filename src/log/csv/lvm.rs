@@ -5,7 +5,11 @@ use super::{
     number::{nanoseconds, number},
     rows::{cell_text, writer},
     scale::unit_named,
+    started::Started,
 };
+
+/// The header of times.
+const SECONDS: &str = "X_Value [s]";
 
 const END: &[u8] = b"***End_of_Header***";
 
@@ -25,12 +29,18 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
     };
     let untimed = says("X_Columns").as_deref() == Some("No");
     let comma = says("Decimal_Separator").as_deref() == Some(",");
+    let started = says("Date").zip(says("Time")).and_then(|(day, time)| Started::of_day(&day, &time));
+    let mut clocks: Vec<usize> = Vec::new();
     let mut out = writer(Separator::Byte(b'\t'));
     let mut header: Option<Vec<String>> = None;
     for line in lines.filter(|line| !line.trim_ascii().is_empty() && !line.starts_with(END)) {
         let cells: Vec<&[u8]> = line.split(|byte| *byte == separator).collect();
         if cells[0] == b"X_Value" {
-            let names = segment.names(&cells);
+            let mut names = segment.names(&cells);
+            clocks = (0..names.len()).filter(|at| started.is_some() && names[*at] == SECONDS).collect();
+            for clock in &clocks {
+                names[*clock] = "X_Value".to_owned();
+            }
             match &header {
                 Some(before) if *before != names => return None,
                 Some(_) => {}
@@ -42,7 +52,12 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
             let width = header.as_ref()?.len();
             let time = if untimed { segment.time(comma)? } else { cells[0].to_vec() };
             let rest = cells[1..].iter().copied().chain(std::iter::repeat(&[][..]));
-            out.write_record(std::iter::once(time.as_slice()).chain(rest).take(width)).ok()?;
+            for (at, cell) in std::iter::once(time.as_slice()).chain(rest).take(width).enumerate() {
+                let started = started.filter(|_| clocks.contains(&at));
+                let instant = started.and_then(|started| started.at(cell, comma, 1_000_000_000));
+                out.write_field(instant.as_deref().unwrap_or(cell)).ok()?;
+            }
+            out.write_record(None::<&[u8]>).ok()?;
             segment.rows += 1;
         }
     }
@@ -83,7 +98,7 @@ impl Segment {
         let mut channels = self.units.iter();
         let names = cells.iter().map(|cell| cell_text(cell)).filter(|name| name != "Comment");
         let names = names.map(|name| match name.as_str() {
-            "X_Value" if of_time => "X_Value [s]".to_owned(),
+            "X_Value" if of_time => SECONDS.to_owned(),
             "X_Value" => name,
             _ => match channels.next().filter(|unit| unit_named(unit).is_some()) {
                 Some(unit) => format!("{name} [{unit}]"),
@@ -139,6 +154,12 @@ mod tests {
             ["0,000000000\t1,5\t2", "0,500000000\t2,5\t3", "1,000000000\t1,5\t2", "1,500000000\t2,5\t3"];
         let expected = format!("X_Value [s]\tboom set [mm]\tvalve\n{}\n", rows.join("\n"));
         assert_eq!(of(&text), Some(expected));
+        let dated = ABOVE.replace("X_Columns", "Date\t2025/06/15\r\nTime\t15:06:40,5\r\nX_Columns");
+        let table = of(&format!("{dated}{}", segment("1", "boom set\tvalve"))).unwrap();
+        assert!(
+            table.starts_with("X_Value\tboom set [mm]\tvalve\n2025-06-15 15:06:41.500000000\t1,5"),
+            "{table}"
+        );
     }
 
     #[test]

@@ -16,6 +16,7 @@ mod date;
 mod dated;
 mod decimal_mark;
 mod dialect;
+mod doubled;
 mod echoed;
 mod efforts;
 mod elapsed;
@@ -41,9 +42,12 @@ mod long;
 mod lvm;
 mod map;
 mod marks;
+mod members;
 mod name;
 mod named_values;
+mod negatives;
 mod number;
+mod numbered;
 mod object_number;
 mod objects;
 mod offered;
@@ -65,10 +69,15 @@ mod si;
 mod signals;
 mod spread;
 mod stamp;
+mod started;
 mod stream;
+#[cfg(test)]
+mod tests;
 mod text;
 mod time;
 mod too_fast;
+mod trailing;
+mod trajectory;
 mod typed;
 mod understood;
 mod unit;
@@ -201,9 +210,13 @@ fn read_table(
     options: &CsvOptions,
     mut remarks: Remarks,
 ) -> Result<CsvRun, CsvError> {
+    let text = trailing::filled(name, &text, options).map_or(text, Cow::Owned);
+    let text = negatives::signed(name, &text, options)?.map_or(text, Cow::Owned);
+    let text = numbered::gathered(&text).map_or(text, Cow::Owned);
     let text = lists::widened(&text).map_or(text, Cow::Owned);
     let text = only::of_one(name, text, options)?;
     let text = judged::without_bad(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
+    let text = doubled::once(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
     let text = unpadded::padded(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
     let (text, form, _) = in_one_form(name, text, options, &mut remarks);
     let before = remarks.clone();
@@ -353,48 +366,5 @@ impl Form {
         let layout_added = (&layout, self.added());
         let understood = Understood::new(name, *dialect, head, time, layout_added, &cells, &units);
         Ok((CsvRun::new((layout, kinds), cells, understood, remarks), units))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn read(text: &str) -> Result<CsvRun, CsvError> {
-        read_csv_bytes("a.csv", text.as_bytes(), &CsvOptions::default())
-    }
-
-    /// A header and so many rows.
-    fn table(header: &str, rows: u32, row: impl Fn(u32) -> String) -> String {
-        (0..rows).fold(format!("{header}\n"), |text, k| format!("{text}{}\n", row(k)))
-    }
-
-    #[test]
-    fn a_speed_is_no_position_whatever_its_joint_does() {
-        let error = read("t_s,setpoint_rpm,actual_rpm\n0,100,0\n1,100,42\n").unwrap_err().to_string();
-        assert!(
-            error.contains("no column looks like a joint angle (column \"setpoint_rpm\" is a speed)"),
-            "{error}"
-        );
-        let run = read("t_s,boom_set_mm,boom_act_mm,boom_rpm\n0,1,0,9\n1,2,1,9\n").unwrap();
-        assert_eq!(run.understood.unused, ["boom_rpm"]);
-    }
-
-    #[test]
-    fn a_column_that_rises_through_many_rows_is_named_as_the_time() {
-        let text =
-            table("", 900, |k| format!("{},{},{}", 900 - k.abs_diff(800), k % 7, 0.001 * f64::from(k)));
-        let error = read(text.trim_start()).unwrap_err().to_string();
-        assert!(error.contains("--time '#3' --planned 'J1=#1' --measured 'J1=#2' --degrees"), "{error}");
-    }
-
-    #[test]
-    fn the_load_of_a_controller_is_no_clock_of_few_rows() {
-        let text = table("timestamp,target_q_0,actual_q_0,actual_execution_time", 9, |k| {
-            format!("{},0.1,0.1,{}", 0.008 * f64::from(k), 0.17 + 0.02 * f64::from(k * 4 % 7))
-        });
-        let run = read(&text).unwrap();
-        let clocks = |code| run.remarks.as_slice().iter().filter(|remark| remark.code == code).count();
-        assert_eq!((clocks(Code::Ambiguous), clocks(Code::Guessed)), (0, 0));
     }
 }

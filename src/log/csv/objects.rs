@@ -7,14 +7,13 @@ use std::{
 
 use serde_json::{Map, Value};
 
-use super::{keys::NAMES, label::label, lenient::parsed, number::number};
+use super::{
+    label::label,
+    lenient::parsed,
+    members::{Cells, cells_of, is_naming},
+    number::number,
+};
 use crate::remark::{Code, Remarks};
-
-/// Keys of lists of the names of joints.
-pub(super) const LISTS: [&str; 5] = ["name", "names", "joint_names", "joints", "joint"];
-
-/// Keys and cells of an object.
-type Cells = Vec<(String, String)>;
 
 /// Turns objects, a line each, into lines of a table. Lists become columns `KEY_1` and on, objects within objects
 /// `KEY_INNER`. Columns are the keys of all objects that were gathered; keys that come later are counted and left out.
@@ -203,11 +202,6 @@ fn cell<'a>(cells: &'a Cells, key: &str) -> Option<&'a str> {
     cells.iter().find(|(other, _)| other == key).map(|(_, cell)| cell.as_str())
 }
 
-/// Whether a key says of what an object is.
-fn is_naming(key: &str) -> bool {
-    NAMES.contains(&key.trim_matches(['_', ' ']).to_lowercase().as_str())
-}
-
 /// Adds cells to a row that has some of them, all alike, and lacks others; else `false`.
 fn add(row: &mut Cells, cells: &Cells) -> bool {
     let filled = || cells.iter().filter(|(_, cell)| !cell.is_empty());
@@ -261,72 +255,6 @@ pub(super) fn as_table(text: &[u8], remarks: &mut Remarks) -> Option<Vec<u8>> {
 
 fn cells(line: &[u8]) -> Option<Cells> {
     parsed(line).map(cells_of)
-}
-
-fn cells_of(object: Map<String, Value>) -> Cells {
-    let mut cells = Vec::new();
-    flatten_object("", &published(object), None, &mut cells);
-    cells
-}
-
-/// A message that a bridge published, with its topic; other objects as they are.
-fn published(mut object: Map<String, Value>) -> Map<String, Value> {
-    let is_published = object.get("op").is_some_and(|op| op == "publish") && object.contains_key("topic");
-    match object.remove("msg") {
-        Some(Value::Object(mut message)) if is_published && !message.contains_key("topic") => {
-            message.extend(object.remove("topic").map(|topic| ("topic".to_owned(), topic)));
-            message
-        }
-        other => {
-            object.extend(other.map(|value| ("msg".to_owned(), value)));
-            object
-        }
-    }
-}
-
-/// The names of joints that an object lists, for the lists beside them and in objects within.
-pub(super) fn listed(object: &Map<String, Value>) -> Option<Vec<&str>> {
-    let lists = object.iter().filter(|(key, _)| LISTS.contains(&key.to_lowercase().as_str()));
-    let mut found = lists
-        .filter_map(|(_, value)| value.as_array()?.iter().map(Value::as_str).collect::<Option<Vec<&str>>>());
-    found.find(|names| !names.is_empty() && names.iter().collect::<BTreeSet<_>>().len() == names.len())
-}
-
-/// Adds the cells of the values of an object; `before` stands before its keys, `names` are those of the object it is in.
-fn flatten_object(before: &str, object: &Map<String, Value>, names: Option<&[&str]>, cells: &mut Cells) {
-    let own = listed(object);
-    let names = own.as_deref().or(names);
-    for (key, value) in object {
-        let path = if before.is_empty() { key.clone() } else { format!("{before}_{key}") };
-        let of_joints = value.as_array().zip(names).filter(|(list, names)| {
-            list.len() == names.len() && list.iter().all(|value| value.is_number() || value.is_null())
-        });
-        match of_joints {
-            Some((list, names)) => {
-                names
-                    .iter()
-                    .zip(list)
-                    .for_each(|(name, value)| flatten(&format!("{name} {path}"), value, None, cells));
-            }
-            // Names are no values.
-            None if own.is_some() && LISTS.contains(&key.to_lowercase().as_str()) => {}
-            None => flatten(&path, value, names, cells),
-        }
-    }
-}
-
-fn flatten(key: &str, value: &Value, names: Option<&[&str]>, cells: &mut Cells) {
-    match value {
-        Value::Object(inner) => flatten_object(key, inner, names, cells),
-        Value::Array(list) => {
-            (1..)
-                .zip(list)
-                .for_each(|(number, value)| flatten(&format!("{key}_{number}"), value, names, cells));
-        }
-        Value::String(text) => cells.push((key.to_owned(), text.clone())),
-        Value::Null => cells.push((key.to_owned(), String::new())),
-        other => cells.push((key.to_owned(), other.to_string())),
-    }
 }
 
 /// Appends cells as a line, each in quotes.

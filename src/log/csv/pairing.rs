@@ -2,7 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use super::{Quantity, Role, head::Head, label::Label};
+use super::{
+    Quantity, Role,
+    head::Head,
+    label::Label,
+    word::{Meaning, words},
+};
 use crate::{
     log::last_part::{alike, pairs},
     remark::{Code, Remarks},
@@ -127,6 +132,54 @@ pub(super) fn without_speeds(
     drafts.retain(|draft| found.iter().all(|(column, _)| draft.column != *column));
 }
 
+/// Words of columns that are filtered, and of such that are not.
+const FILTERED: [&str; 5] = ["filtered", "filt", "smoothed", "smooth", "gefiltert"];
+const RAW: [&str; 3] = ["raw", "unfiltered", "roh"];
+
+fn says(label: &Label, list: &[&str]) -> bool {
+    label.words.iter().any(|word| list.contains(&word.as_str()))
+}
+
+/// The words of a column besides these.
+fn others(label: &Label) -> Vec<&String> {
+    let is_other = |word: &&String| !FILTERED.contains(&word.as_str()) && !RAW.contains(&word.as_str());
+    label.words.iter().filter(is_other).collect()
+}
+
+/// Filtered columns beside measured ones of the same joint in use, `pos_filt1` beside `pos_meas1`, are no joints of their own, and left out.
+pub(super) fn without_filtered(
+    head: &Head,
+    labels: &[Label],
+    drafts: &mut Vec<Draft>,
+    given: impl Fn(usize) -> bool,
+    remarks: &mut Remarks,
+) {
+    let joint = |column: usize| {
+        let says_no_side =
+            |word: &&String| !words(word).iter().any(|one| matches!(one.meaning, Meaning::Role(_)));
+        others(&labels[column]).into_iter().filter(says_no_side).collect::<Vec<_>>()
+    };
+    let filtered = |draft: &Draft| says(&labels[draft.column], &FILTERED);
+    let of_side = |draft: &Draft, other: &Draft| {
+        draft.role == Role::Measured && other.role == Role::Measured && draft.quantity == other.quantity
+    };
+    let beside = |draft: &Draft| {
+        let is = |other: &&Draft| {
+            of_side(draft, other) && !filtered(other) && joint(other.column) == joint(draft.column)
+        };
+        let other = drafts.iter().find(is).filter(|_| filtered(draft) && !given(draft.column))?;
+        Some((draft.column, other.column))
+    };
+    let found: Vec<(usize, usize)> = drafts.iter().filter_map(beside).collect();
+    let Some((left, used)) = found.first() else { return };
+    let message = format!(
+        "columns such as {:?} are filtered, and left out for those such as {:?}: delays would be those of the filter, too",
+        head.names[*left], head.names[*used]
+    );
+    remarks.add(Code::Ambiguous, found.len() as u64, message);
+    drafts.retain(|draft| found.iter().all(|(column, _)| draft.column != *column));
+}
+
 /// Says that measured columns in use are filtered, where others are not: a filter is a delay.
 pub(super) fn remark_filtered(
     head: &Head,
@@ -134,14 +187,8 @@ pub(super) fn remark_filtered(
     measured: &[(usize, &str)],
     remarks: &mut Remarks,
 ) {
-    const FILTERED: [&str; 5] = ["filtered", "filt", "smoothed", "smooth", "gefiltert"];
-    const RAW: [&str; 3] = ["raw", "unfiltered", "roh"];
-    let says =
-        |column: usize, list: &[&str]| labels[column].words.iter().any(|word| list.contains(&word.as_str()));
-    let others = |column: usize| {
-        let is_other = |word: &&String| !FILTERED.contains(&word.as_str()) && !RAW.contains(&word.as_str());
-        labels[column].words.iter().filter(is_other).collect::<Vec<_>>()
-    };
+    let says = |column: usize, list: &[&str]| says(&labels[column], list);
+    let others = |column: usize| others(&labels[column]);
     let found =
         measured.iter().filter(|(column, _)| says(*column, &FILTERED)).filter_map(|(column, joint)| {
             let is_raw = |raw: &usize| {

@@ -111,10 +111,7 @@ pub(super) fn read(
         *ns = wraps.undone(time, *ns);
     }
     wraps.remark(remarks);
-    let of_day = time.is_of_day();
-    let repeats =
-        |row: usize| columns.values().all(|one| one.values[row].to_bits() == one.values[row - 1].to_bits());
-    if let Some(rows) = row_order::kept(&stamp_ns, &repeats, of_day, remarks) {
+    if let Some(rows) = row_order::in_order(&stamp_ns, time.is_of_day(), remarks) {
         stamp_ns = rows.iter().map(|row| stamp_ns[*row]).collect();
         for column in columns.values_mut() {
             column.take(&rows);

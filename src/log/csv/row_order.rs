@@ -1,4 +1,4 @@
-//! Rows in the order of their times, each once.
+//! Rows in the order of their times.
 
 use crate::{
     math::median,
@@ -14,24 +14,9 @@ const MANY: usize = 5;
 /// Steps that are all within these of the one in the middle are even.
 const EVEN: [f64; 2] = [0.7, 1.4];
 
-/// Share of rows with the time of the row before that repeat all of it, where rows were written twice.
-const WRITTEN_TWICE: f64 = 0.99;
-
-/// The rows that count, in the order of their times; `None` where that is all of them as they stand. `repeats` says of a row whether it has
-/// the numbers of the one before.
-pub(super) fn kept(
-    stamp_ns: &[i64],
-    repeats: &dyn Fn(usize) -> bool,
-    of_day: bool,
-    remarks: &mut Remarks,
-) -> Option<Vec<usize>> {
-    let all = stamp_ns.len();
-    let mut rows: Vec<usize> = (0..all).collect();
-    if written_twice(stamp_ns, repeats) {
-        rows.retain(|row| *row == 0 || stamp_ns[*row] != stamp_ns[row - 1] || !repeats(*row));
-        let message = "rows that repeat the row before, time and all: they were written twice; left out";
-        remarks.add(Code::DuplicateStamp, (all - rows.len()) as u64, message);
-    }
+/// The rows in the order of their times; `None` where they stand in it.
+pub(super) fn in_order(stamp_ns: &[i64], of_day: bool, remarks: &mut Remarks) -> Option<Vec<usize>> {
+    let mut rows: Vec<usize> = (0..stamp_ns.len()).collect();
     let backwards = runs_backwards(stamp_ns);
     if backwards {
         rows.reverse();
@@ -42,18 +27,7 @@ pub(super) fn kept(
         remarks.add(Code::Reordered, stamps.windows(2).filter(|w| w[1] < w[0]).count() as u64, message);
         return Some(order.into_iter().map(|place| rows[place]).collect());
     }
-    (backwards || rows.len() < all).then_some(rows)
-}
-
-/// Whether rows were written twice: nearly all that have the time of the row before repeat its numbers, too. Those of a clock that is
-/// coarser than the rows do not.
-fn written_twice(stamp_ns: &[i64], repeats: &dyn Fn(usize) -> bool) -> bool {
-    let (mut again, mut same) = (0_usize, 0_usize);
-    for row in (1..stamp_ns.len()).filter(|row| stamp_ns[*row] == stamp_ns[row - 1]) {
-        again += 1;
-        same += usize::from(repeats(row));
-    }
-    same >= FEWEST && same as f64 >= WRITTEN_TWICE * again as f64
+    backwards.then_some(rows)
 }
 
 /// Whether the newest row comes first, as databases are asked for them: nearly every row is earlier than the one before.
@@ -95,15 +69,11 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_were_written_twice_count_once_and_those_of_a_coarse_clock_all() {
-        let read = |rows: &dyn Fn(i32) -> (i64, f64)| {
-            let (stamps, values): (Vec<i64>, Vec<f64>) = (0..200).map(rows).unzip();
-            let repeats = |row: usize| values[row].to_bits() == values[row - 1].to_bits();
-            kept(&stamps, &repeats, false, &mut Remarks::default()).map(|rows| rows.len())
+    fn the_newest_row_may_come_first() {
+        let of = |step: i64| {
+            let stamps: Vec<i64> = (0..20).map(|row| step * row).collect();
+            in_order(&stamps, false, &mut Remarks::default())
         };
-        assert_eq!(read(&|row| (i64::from(row / 2) * 20, f64::from(row / 2))), Some(100));
-        assert_eq!(read(&|row| (i64::from(row / 2) * 20, f64::from(row))), None);
-        assert_eq!(read(&|row| (i64::from(row) * 20, 1.0)), None);
-        assert_eq!(read(&|row| (i64::from(row) * -20, 1.0)), Some(200), "backwards");
+        assert_eq!((of(-20), of(20)), (Some((0..20).rev().collect()), None));
     }
 }

@@ -1,7 +1,7 @@
 //! Recordings of a controller's oscilloscope: above the numbers stand rows of properties, in which a key stands before
 //! each signal, or before the signals of a clock, and below it the times of that clock.
 
-use std::collections::BTreeSet;
+use std::{borrow::Cow, collections::BTreeSet};
 
 use super::{
     Separator,
@@ -9,11 +9,13 @@ use super::{
     number::number,
     rows::{cell_text, writer},
     scale::{unit_alone, unit_named},
-    unit::Measure,
+    started::Started,
+    unit::{Measure, Unit},
 };
 use crate::{
     math::median,
     remark::{Code, Remarks},
+    units::whole_ns,
 };
 
 /// Rows of properties that there are at least, unless a key comes again in a row.
@@ -39,7 +41,7 @@ fn table(text: &[u8], separator: u8, remarks: &mut Remarks) -> Option<Vec<u8>> {
         .collect();
     let blank = |row: &[&[u8]]| row.iter().all(|cell| cell.is_empty());
     let numeric = |row: &[&[u8]]| {
-        row.len() > 2 && !blank(row) && row.iter().all(|cell| cell.is_empty() || is_number(cell))
+        row.len() > 1 && !blank(row) && row.iter().all(|cell| cell.is_empty() || is_number(cell))
     };
     let first = lines.iter().position(|row| numeric(row))?;
     let end = lines[..first].iter().rposition(|row| !blank(row))? + 1;
@@ -56,14 +58,36 @@ fn table(text: &[u8], separator: u8, remarks: &mut Remarks) -> Option<Vec<u8>> {
     let last = lines.iter().rposition(|row| !blank(row)).filter(|last| !row_has_number(&lines[*last]));
     let rows: Vec<&Vec<&[u8]>> =
         lines[first..last.unwrap_or(lines.len())].iter().filter(|row| !blank(row)).collect();
-    let time = time(&properties, &clocks, &rows);
+    let sampled = sampled(&properties);
+    let counted = counted(sampled, &clocks, &rows, width);
+    let time = |row: usize| counted.map(|step| Cow::Owned((step * row as f64).to_string().into_bytes()));
+    let rows: Vec<Vec<Cow<'_, [u8]>>> = rows
+        .iter()
+        .enumerate()
+        .map(|(at, row)| time(at).into_iter().chain(row.iter().map(|cell| Cow::Borrowed(*cell))).collect())
+        .collect();
+    let unit = sampled.filter(|sampled| counted.is_some() || sampled.are_steps(&clocks, &rows));
+    let started = lines[..start].iter().find(|row| row[0].starts_with(b"Starttime"));
+    let started = unit.zip(started.and_then(|row| Started::of_filetime(row.get(1)?)));
+    let time = match (unit, started) {
+        (Some(sampled), None) => format!("{PLAIN} [{}]", sampled.unit.name),
+        _ => PLAIN.to_owned(),
+    };
     let header = (0..width).map(|at| if clocks.contains(&at) { time.clone() } else { names[at].clone() });
     let mut out = writer(Separator::Byte(b'\t'));
     out.write_record(header.map(String::into_bytes)).ok()?;
     for row in rows {
         let beyond = row.iter().skip(width).any(|cell| !cell.is_empty());
         let length = if beyond { row.len() } else { width };
-        out.write_record(row.iter().copied().chain(std::iter::repeat(&[][..])).take(length)).ok()?;
+        for at in 0..length {
+            let cell = row.get(at).map_or(&[][..], |cell| cell);
+            let instant = started.filter(|_| clocks.contains(&at)).and_then(|(sampled, started)| {
+                let unit_ns = whole_ns(sampled.unit.factor)?;
+                started.at(cell, false, unit_ns).or_else(|| started.at(cell, true, unit_ns))
+            });
+            out.write_field(instant.as_deref().unwrap_or(cell)).ok()?;
+        }
+        out.write_record(None::<&[u8]>).ok()?;
     }
     out.into_inner().ok()
 }
@@ -143,24 +167,52 @@ fn names(properties: &[Property<'_>], clocks: &[usize], width: usize, remarks: &
     names
 }
 
-/// The header of times: in the unit that a key gives for the time between samples, if they are so far apart.
-fn time(properties: &[Property<'_>], clocks: &[usize], rows: &[&Vec<&[u8]>]) -> String {
-    const PLAIN: &str = "Time";
-    let stated = properties.iter().find_map(|one| {
+/// The header of times.
+const PLAIN: &str = "Time";
+
+/// The row of the time between samples, and its unit.
+#[derive(Clone, Copy)]
+struct Sampled<'a> {
+    cells: &'a [&'a [u8]],
+    unit: Unit,
+}
+
+fn sampled<'a>(properties: &'a [Property<'_>]) -> Option<Sampled<'a>> {
+    properties.iter().find_map(|one| {
         let (_, unit) = one.key.strip_suffix([']', ')'])?.rsplit_once(['[', '('])?;
-        let measure = unit_named(unit)?.measure;
-        (measure == Measure::Time).then_some((unit, one))
-    });
-    let Some((unit, sampled)) = stated else { return PLAIN.to_owned() };
-    let value = |cell: &[u8]| number(cell, false).or_else(|| number(cell, true));
-    let alike = |clock: &usize| {
-        let times: Vec<f64> = rows.iter().filter_map(|row| value(row.get(*clock)?)).collect();
-        let steps: Vec<f64> =
-            times.windows(2).map(|two| two[1] - two[0]).filter(|step| *step > 0.0).collect();
-        let said = sampled.cells.get(clock + 1).and_then(|cell| value(cell));
-        said.is_some_and(|said| !steps.is_empty() && (median(steps) / said - 1.0).abs() < ALIKE)
-    };
-    if clocks.iter().all(alike) { format!("{PLAIN} [{unit}]") } else { PLAIN.to_owned() }
+        let unit = unit_named(unit).filter(|unit| unit.measure == Measure::Time)?;
+        Some(Sampled { cells: &one.cells, unit })
+    })
+}
+
+fn value(cell: &[u8]) -> Option<f64> {
+    number(cell, false).or_else(|| number(cell, true))
+}
+
+impl Sampled<'_> {
+    /// Whether the times of each clock are so far apart.
+    fn are_steps(self, clocks: &[usize], rows: &[Vec<Cow<'_, [u8]>>]) -> bool {
+        clocks.iter().all(|clock| {
+            let times: Vec<f64> = rows.iter().filter_map(|row| value(row.get(*clock)?)).collect();
+            let steps: Vec<f64> =
+                times.windows(2).map(|two| two[1] - two[0]).filter(|step| *step > 0.0).collect();
+            let said = self.cells.get(clock + 1).and_then(|cell| value(cell));
+            said.is_some_and(|said| !steps.is_empty() && (median(steps) / said - 1.0).abs() < ALIKE)
+        })
+    }
+}
+
+/// The time between rows that have none of their own, which lack the first column: that of all signals.
+fn counted(
+    sampled: Option<Sampled<'_>>,
+    clocks: &[usize],
+    rows: &[&Vec<&[u8]>],
+    width: usize,
+) -> Option<f64> {
+    let cells = sampled?.cells.get(1..)?;
+    let first = cells.first().and_then(|cell| value(cell)).filter(|step| step.is_finite() && *step > 0.0)?;
+    let lack = clocks == [0] && rows.iter().all(|row| row.len() + 1 == width);
+    (lack && cells.iter().all(|cell| cell.is_empty() || *cell == cells[0])).then_some(first)
 }
 
 #[cfg(test)]
@@ -184,6 +236,17 @@ mod tests {
             header.contains("Axes.Boom.SetPos [deg]") && header.contains("Axes.Stick.ActPos [deg]"),
             "{header}"
         );
+    }
+
+    #[test]
+    fn rows_without_a_time_come_as_often_as_their_samples_from_the_start_on() {
+        let text = "Starttime of export;133944808000000000;Sunday\n\nName;SetPos_1;ActPos_1\nSampleTime[ms];20;20\n\
+                    Port;851;851\n\n0,5;0,25\n1,5;0,5\n2;1\n";
+        let [mut undated, dated] =
+            [&text[text.find("Name").unwrap()..], text].map(|text| of(text).unwrap().0);
+        assert!(undated.starts_with("Time [ms]\tSetPos_1\tActPos_1\n0\t0,5\t0,25\n20\t1,5"), "{undated}");
+        undated = dated.lines().nth(2).unwrap_or_default().to_owned();
+        assert_eq!(undated, "2025-06-15 17:06:40.020000000Z\t1,5\t0,5");
     }
 
     #[test]

@@ -3,18 +3,7 @@
 use std::borrow::Cow;
 
 use super::CsvError;
-
-/// The first bytes of other kinds of files.
-const OTHERS: [(&[u8], &str, &str); 4] = [
-    (b"\x89MCAP0\r\n", "an MCAP log", "`hydrotrace report` reads it as it is"),
-    (b"PK\x03\x04", "a spreadsheet or an archive", "save the sheet as CSV"),
-    (b"\xd0\xcf\x11\xe0", "an old spreadsheet", "save the sheet as CSV"),
-    (
-        b"SQLite format 3\0",
-        "an SQLite file, such as a ROS 2 bag",
-        "`hydrotrace report` reads bags as they are",
-    ),
-];
+use crate::log::unread::unread;
 
 /// Bytes in which a zero means that this is no text.
 const LOOKED_AT: usize = 4096;
@@ -22,7 +11,7 @@ const LOOKED_AT: usize = 4096;
 /// The text without its byte order mark; UTF-16 becomes UTF-8, everything else stays bytes.
 pub(super) fn of_bytes<'a>(file: &str, bytes: &'a [u8]) -> Result<Cow<'a, [u8]>, CsvError> {
     let not_text = |found: String, fix| CsvError::NotText { file: file.to_owned(), found, fix };
-    if let Some((_, what, fix)) = OTHERS.iter().find(|(magic, ..)| bytes.starts_with(magic)) {
+    if let Some((what, fix)) = unread(bytes) {
         return Err(not_text(format!("it is {what}"), fix));
     }
     let wide = |rest: &[u8], of: fn([u8; 2]) -> u16| {

@@ -111,6 +111,10 @@ pub(super) fn words(header: &str) -> Vec<Word<'_>> {
             words[at - 1].meaning = Meaning::Role(Role::Planned);
         } else if is_position(before) && is(word, "diff") {
             words[at].meaning = Meaning::Foreign;
+        } else if before.text == "q" && !word.apart && (is(word, "in") || is(word, "out")) {
+            // What comes in from the encoders, and what goes out to the drives.
+            let role = if is(word, "in") { Role::Measured } else { Role::Command };
+            words[at].meaning = Meaning::Role(role);
         }
     }
     words

@@ -21,6 +21,7 @@ use super::{
     error::LogError,
     file::Source,
     looks::{LOOKED_AT, is_document, is_table},
+    unread::unread,
 };
 use crate::remark::Remarks;
 
@@ -51,7 +52,10 @@ pub(super) fn log_of(
             },
             |text| table::log(path, text, columns, remarks),
         ),
-        bytes if [is_table, is_document].iter().any(|is| is(&packed::name_within(path), bytes)) => {
+        bytes
+            if unread(bytes).is_none()
+                && [is_table, is_document].iter().any(|is| is(&packed::name_within(path), bytes)) =>
+        {
             let text = source.whole().map_err(LogError::file("read", path))?;
             table::log(path, &text, columns, remarks)
         }
@@ -71,7 +75,7 @@ pub fn read_csv(path: &Path, options: &CsvOptions) -> Result<CsvRun, CsvError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     plain_or_nested(
         |nested| table_text(&source, nested).map_err(fault),
-        |text| read_csv_bytes(&name, text, options),
+        |text| read_csv_bytes(&name, text, options).map_err(|error| error.at(path)),
     )
 }
 

@@ -89,7 +89,8 @@ fn rows(bytes: Vec<u8>, nested: bool) -> Result<Vec<u8>> {
                 };
                 for at in 0..leaf.width.unwrap_or(1) {
                     cell.clear();
-                    elements.get(at).map_or(Ok(()), |element| put(element, leaf.unit_ns, &mut cell))?;
+                    let element = elements.get(at).map(|element| leaf.member(element));
+                    element.map_or(Ok(()), |element| put(element, leaf.unit_ns, &mut cell))?;
                     writer.write_field(&cell).map_err(other)?;
                 }
             }
@@ -110,6 +111,8 @@ struct Leaf {
     path: Vec<usize>,
     /// Elements of a list are columns of their own, as many as the first row has.
     width: Option<usize>,
+    /// Its name and place in each element, where those are values by name.
+    member: Option<(String, usize)>,
     /// Nanoseconds of one, if it is a duration.
     unit_ns: Option<i64>,
 }
@@ -117,15 +120,41 @@ struct Leaf {
 impl Leaf {
     /// Its value in the outermost one.
     fn of<'a>(&self, field: &'a Field) -> &'a Field {
-        self.path.iter().fold(field, |field, at| match field {
-            Field::Group(row) => row.get_column_iter().nth(*at).map_or(&Field::Null, |(_, field)| field),
-            _ => &Field::Null,
-        })
+        self.path.iter().fold(field, |field, at| within(field, *at))
+    }
+
+    /// Its value in an element of a list.
+    fn member<'a>(&self, element: &'a Field) -> &'a Field {
+        self.member.as_ref().map_or(element, |(_, at)| within(element, *at))
     }
 
     fn headers(&self) -> Vec<String> {
         let Some(width) = self.width else { return vec![self.name.clone()] };
-        (0..width).map(|at| format!("{}[{at}]", self.name)).collect()
+        let member = self.member.as_ref().map(|(name, _)| format!(".{name}")).unwrap_or_default();
+        (0..width).map(|at| format!("{}[{at}]{member}", self.name)).collect()
+    }
+}
+
+/// A value in another by its place.
+fn within(field: &Field, at: usize) -> &Field {
+    match field {
+        Field::Group(row) => row.get_column_iter().nth(at).map_or(&Field::Null, |(_, field)| field),
+        _ => &Field::Null,
+    }
+}
+
+/// The names of the values in each element of a list, where those are values by name.
+fn members(list: &Type) -> Option<Vec<String>> {
+    if !list.is_group() || list.get_basic_info().converted_type() != ConvertedType::LIST {
+        return None;
+    }
+    let of = |of: &Type| -> Option<Vec<String>> {
+        of.is_group().then(|| of.get_fields().iter().map(|field| field.name().to_owned()).collect())
+    };
+    let repeated = list.get_fields().first().filter(|repeated| repeated.is_group())?;
+    match repeated.get_fields() {
+        [element] => of(element),
+        _ => of(repeated),
     }
 }
 
@@ -134,7 +163,17 @@ fn leaves(of: &Type, nested: bool) -> Vec<Leaf> {
     let info = of.get_basic_info();
     let plain = info.logical_type_ref().is_none() && info.converted_type() == ConvertedType::NONE;
     if !(nested && of.is_group() && plain) {
-        return vec![Leaf { name: of.name().to_owned(), path: Vec::new(), width: None, unit_ns: None }];
+        let leaf = |member: Option<(String, usize)>| Leaf {
+            name: of.name().to_owned(),
+            path: Vec::new(),
+            width: None,
+            member,
+            unit_ns: None,
+        };
+        return match members(of) {
+            Some(members) => (0..).zip(members).map(|(at, name)| leaf(Some((name, at)))).collect(),
+            None => vec![leaf(None)],
+        };
     }
     let within = of.get_fields().iter().enumerate().flat_map(|(at, field)| {
         leaves(field, nested).into_iter().map(move |mut leaf| {
@@ -254,6 +293,25 @@ mod tests {
         group.close().unwrap();
         let text = rows(writer.into_inner().unwrap(), true).unwrap();
         assert_eq!(String::from_utf8(text).unwrap(), "t,action[0],action[1]\n0,1,2\n0.5,3,\n");
+    }
+
+    #[test]
+    fn elements_that_hold_values_by_name_are_columns_of_those() {
+        let schema = "message run { required double t; required group joints (LIST) { repeated group list { \
+                      required group element { required double set; required double act; } } } }";
+        let schema = Arc::new(parse_message_type(schema).unwrap());
+        let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::default()).unwrap();
+        let mut group = writer.next_row_group().unwrap();
+        for values in [&[0.5][..], &[1.0, 2.0], &[3.0, 4.0]] {
+            let mut column = group.next_column().unwrap().unwrap();
+            let levels: Option<(&[i16], &[i16])> = (values.len() > 1).then_some((&[1, 1], &[0, 1]));
+            let (depth, again) = levels.unzip();
+            column.typed::<DoubleType>().write_batch(values, depth, again).unwrap();
+            column.close().unwrap();
+        }
+        group.close().unwrap();
+        let text = String::from_utf8(rows(writer.into_inner().unwrap(), false).unwrap()).unwrap();
+        assert_eq!(text, "t,joints[0].set,joints[1].set,joints[0].act,joints[1].act\n0.5,1,2,3,4\n");
     }
 
     #[test]

@@ -15,7 +15,11 @@ use super::undescribed;
 use crate::{
     atomic_file::Temporary,
     input_file,
-    log::{error::LogError, file::Source},
+    log::{
+        error::LogError,
+        file::Source,
+        unread::{SQL, with_path},
+    },
     remark::{Code, Remarks},
 };
 
@@ -24,7 +28,7 @@ type Definitions = BTreeMap<String, (String, String)>;
 
 /// The bag as a log, in a temporary file; what comes before a damaged page where the database has one.
 pub(super) fn log(path: &Path, source: &Source, remarks: &mut Remarks) -> Result<Source, LogError> {
-    let bag = |reason: String| LogError::Form { path: path.to_owned(), reason };
+    let bag = |reason: String| LogError::Form { path: path.to_owned(), reason: with_path(&reason, path) };
     let place = Place::of(path, source).map_err(LogError::file("copy", path))?;
     let database = place.open().map_err(|error| bag(error.to_string()))?;
     let definitions = definitions(&database);
@@ -134,7 +138,7 @@ impl Copy<BufWriter<fs::File>> {
             Some(rusqlite::ErrorCode::DatabaseCorrupt | rusqlite::ErrorCode::NotADatabase) => {
                 format!("{error}; `sqlite3 BROKEN.db3 .recover | sqlite3 WHOLE.db3` saves what can be read")
             }
-            _ => format!("it is no bag of ROS 2: {error}"),
+            _ => format!("it is no bag of ROS 2: {error}; {SQL}"),
         };
         let text = "SELECT id, name, type, serialization_format FROM topics";
         let mut statement = database.prepare(text).map_err(fault)?;

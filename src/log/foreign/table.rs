@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::{
     log::{
-        csv::{CsvOptions, read_csv_bytes},
+        csv::{CsvError, CsvOptions, read_csv_bytes},
         error::LogError,
         file::Source,
         import_line::Given,
@@ -20,8 +20,11 @@ pub(super) fn log(
     remarks: &mut Remarks,
 ) -> Result<Source, LogError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let fault =
-        |source| LogError::Table { path: path.to_owned(), source: Box::new(source), given: Given::default() };
+    let fault = |source: CsvError| LogError::Table {
+        path: path.to_owned(),
+        source: Box::new(source.at(path)),
+        given: Given::default(),
+    };
     let run = read_csv_bytes(&name, text, columns).map_err(fault)?;
     remarks.extend(run.remarks.clone());
     Ok(run.write(Vec::new()).map_err(|error| fault(error.into()))?.into())

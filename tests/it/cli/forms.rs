@@ -99,7 +99,10 @@ fn recordings_of_an_oscilloscope_have_a_clock_for_each_signal() {
     let text = format!("{}{}EOF\n", head("\t"), rows(late));
     let (code, found, error) = report("scope.csv", &text);
     assert_eq!(code, 0, "{found}{error}");
-    assert!(found.contains("MAIN.boom.SetPos [deg]") && found.contains("Time [ms] (counts ms)"), "{found}");
+    assert!(
+        found.contains("MAIN.boom.SetPos [deg]") && found.contains("Time (yyyy-mm-dd hh:mm:ss with zone"),
+        "{found}"
+    );
     let scaled = text.replace("ScaleFactor\t1\tScaleFactor\t1", "ScaleFactor\t1\tScaleFactor\t2");
     let (code, found, error) = report("scope.csv", &scaled);
     assert!(code == 3 && found.contains("ScaleFactor"), "{found}{error}");
