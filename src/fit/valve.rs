@@ -25,6 +25,9 @@ const DELAYS: u32 = 35;
 /// Fewest samples for a direction.
 const SAMPLES: usize = 60;
 
+/// Speeds and earlier signals of a slow motion.
+type Motion = Vec<(f64, f64)>;
+
 /// Slow motion after a longer pause is another motion, s; so many at least tell how far they differ.
 const APART_S: f64 = 0.5;
 const FEWEST: usize = 3;
@@ -58,11 +61,11 @@ pub(super) fn dead_band(valve: &Signal, measured: &Track) -> Option<[Estimated; 
             .map(|(&t_s, fit)| (t_s, way * fit.velocity))
             .collect();
         let motions: Vec<&[(f64, f64)]> = moving.chunk_by(|a, b| b.0 - a.0 < APART_S).collect();
-        let mut best: Option<(f64, f64, Vec<Vec<(f64, f64)>>)> = None;
+        let mut best: Option<(f64, f64, Vec<Motion>)> = None;
         for step in 0..DELAYS {
             let delay_s = f64::from(step) * DELAY_STEP_S;
             let signal = |(t_s, speed): &(f64, f64)| Some((*speed, way * valve.at(t_s - delay_s)?));
-            let signals: Vec<Vec<(f64, f64)>> =
+            let signals: Vec<Motion> =
                 motions.iter().map(|motion| motion.iter().filter_map(signal).collect()).collect();
             let Some((start, spread)) = line(&signals.concat()) else { continue };
             if best.as_ref().is_none_or(|(_, least, _)| spread < *least) {
@@ -83,7 +86,7 @@ pub(super) fn dead_band(valve: &Signal, measured: &Track) -> Option<[Estimated; 
 }
 
 /// Standard deviation of the line's start by leaving out each motion, whose samples tell of one another; infinite of too few.
-fn jackknife(motions: &[Vec<(f64, f64)>]) -> f64 {
+fn jackknife(motions: &[Motion]) -> f64 {
     let without = |out: usize| {
         let rest = motions.iter().enumerate().filter(|(k, _)| *k != out);
         line(&rest.flat_map(|(_, motion)| motion.iter().copied()).collect::<Vec<_>>())

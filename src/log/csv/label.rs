@@ -13,7 +13,7 @@ use super::{
     typed::without_type,
     unit::{ANOTHER, METRE, Measure, UNITLESS, Unit, split_suffix},
     within::take_unit,
-    word::{Meaning, Word, words},
+    word::{Meaning, Word, role, words},
 };
 
 /// Role, quantity, joint and unit of a column by its header.
@@ -105,13 +105,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let measure = unit.map(|unit| unit.measure);
     current_is_measured(&mut words, matches!(measure, Some(Measure::Angle | Measure::Length)));
     let means = |meaning: Meaning| words.iter().any(|word| word.meaning == meaning);
-    // Of a path the last part says most: `fbAxis.SetPos`.
-    let role = words.iter().rev().find_map(|word| match word.meaning {
-        // What is a command as well was sent: `target_cmd`.
-        Meaning::Role(Role::Planned) if means(Meaning::Role(Role::Command)) => Some(Role::Command),
-        Meaning::Role(role) => Some(role),
-        _ => None,
-    });
+    let role = role(&words);
     // `theta_dot` is a speed.
     let dots = words.iter().filter(|word| word.text.eq_ignore_ascii_case("dot")).count();
     // So is what names an angle and a speed: `elbow_angle_vel`.

@@ -117,8 +117,8 @@ fn columns(header: &[String], sample: &[Vec<String>]) -> (Vec<Holds>, Option<usi
     let list = |at: usize| move |row: &Vec<String>| items(row.get(at)?).filter(|list| !list.is_empty());
     let are_names =
         |list: &Vec<String>| list.iter().collect::<BTreeSet<_>>().len() == list.len() && !are_numbers(list);
-    let naming = (0..header.len())
-        .find(|at| sample.iter().filter_map(list(*at)).next().is_some_and(|list| are_names(&list)));
+    let naming =
+        (0..header.len()).find(|at| sample.iter().find_map(list(*at)).is_some_and(|list| are_names(&list)));
     let of = |(at, name): (usize, &String)| {
         let numbers =
             |row: &&Vec<String>| list(at)(row).is_some_and(|list| are_numbers(&list) && list.len() <= MOST);

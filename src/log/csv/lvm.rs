@@ -39,7 +39,7 @@ pub(super) fn as_table(text: &[u8]) -> Option<Vec<u8>> {
             let mut names = segment.names(&cells);
             clocks = (0..names.len()).filter(|at| started.is_some() && names[*at] == SECONDS).collect();
             for clock in &clocks {
-                names[*clock] = "X_Value".to_owned();
+                "X_Value".clone_into(&mut names[*clock]);
             }
             match &header {
                 Some(before) if *before != names => return None,

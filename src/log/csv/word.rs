@@ -193,6 +193,16 @@ fn compound(word: &str) -> Option<Vec<usize>> {
     None
 }
 
+/// Of a path the last part says most: `fbAxis.SetPos`; what is a command as well was sent: `target_cmd`.
+pub(super) fn role(words: &[Word<'_>]) -> Option<Role> {
+    let sent = words.iter().any(|word| word.meaning == Meaning::Role(Role::Command));
+    words.iter().rev().find_map(|word| match word.meaning {
+        Meaning::Role(Role::Planned) if sent => Some(Role::Command),
+        Meaning::Role(role) => Some(role),
+        _ => None,
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,18 +4,15 @@ use std::iter;
 
 use crate::{
     fit::{Character, LEAST_SKILL, SharedLimit},
-    plan::Limit,
     render::{
         fit::shared,
         kit::{Block, Check, Id, Mark, Section, Sentence, counted, mm, optional, share},
         metric::{Units, position},
-        plan,
     },
-    workflow::{
-        plan::MarginEntry,
-        replan::{self, Checks, Finding, JointTrust, Left, Level, Outside, Reason, TooFast, Verdict},
-    },
+    workflow::replan::{self, Checks, Finding, JointTrust, Left, Level, Reason, TooFast, Verdict},
 };
+
+use super::limits;
 
 pub(super) const ID: Id = Id("checks");
 
@@ -151,55 +148,7 @@ fn words(level: Level, finding: &Finding, units: Units) -> String {
                 acceleration_rad_s2.map_or(String::new(), |a| format!(", acceleration {}/s2", shown(a)));
             format!("{start}: speed {}/s{acceleration}.", shown(*speed_rad_s))
         }
-        Finding::Limits {
-            broken,
-            between,
-            nearest,
-            unlimited,
-            unchecked,
-            steep,
-            fastest,
-            sharpest,
-            outside,
-        } => {
-            let names = |of: &[Limit]| of.iter().map(|limit| limit.name()).collect::<Vec<_>>().join(", ");
-            let steep = steep.as_ref().map_or(String::new(), |of| {
-                let [own, most] =
-                    [of.acceleration_rad_s2, of.limit_rad_s2].map(|value| position(of.kind, value));
-                format!(
-                    " By its samples {} is accelerated to about {own}/s2, and its limit is {most}/s2.",
-                    of.joint
-                )
-            });
-            let by_samples = if unchecked.is_empty() {
-                String::new()
-            } else {
-                format!(" Not checked, for the plan is known by its samples alone: {}.", names(unchecked))
-            };
-            let none = match (unlimited.is_empty(), nearest.is_empty()) {
-                (true, _) => String::new(),
-                (false, true) => format!(" Not checked: {}.", names(unlimited)),
-                (false, false) => format!(" No limit is known of: {}.", names(unlimited)),
-            };
-            let fast = fastest.as_ref().map_or(String::new(), |fast| {
-                format!(
-                    " {} is sent up to {}/s, {:.1} times as fast as its plan.",
-                    fast.joint,
-                    position(fast.kind, fast.speed_rad_s),
-                    fast.ratio
-                )
-            });
-            let sharp = sharpest.as_ref().map_or(String::new(), |sharp| {
-                format!(" {} is accelerated up to {:.1} times as much as its plan.", sharp.joint, sharp.ratio)
-            });
-            limits([*broken, *between], nearest)
-                + &steep
-                + &fast
-                + &sharp
-                + &beyond(outside)
-                + &by_samples
-                + &none
-        }
+        Finding::Limits { .. } => limits::words(finding),
         Finding::TooFast(TooFast { joint, kind, planned_rad_s, limit_rad_s: [own, most], also }) => format!(
             "The plan of {joint} goes up to {}/s, and the joint was found to make {}/s, {}/s at most, in the runs of the fit{}: no command \
              mends that, a slower plan does, or, where joints share a pump or a supply, fewer of them at once.",
@@ -237,18 +186,7 @@ fn words(level: Level, finding: &Finding, units: Units) -> String {
             shown(overall.plain_p95_rad),
             if good { "" } else { ": the correction gains at starts and loses more elsewhere" }
         ),
-        Finding::Leave { farthest, also, tool_m } => {
-            let tool = tool_m.map_or(String::new(), |m| format!(", up to {} mm at the tool", mm(m)));
-            let advice = match level {
-                Level::Stop => "send less of it (--gain 0.5), or a slower plan",
-                Level::Good | Level::Caution => "keep that room free",
-            };
-            let one = |left: &Left| {
-                format!("{} ({} at {:.1} s)", position(left.kind, left.distance_rad), left.joint, left.t_s)
-            };
-            let far: Vec<String> = iter::once(farthest).chain(also).map(one).collect();
-            format!("It leaves the plan by up to {}{tool}: {advice}.", far.join(" and "))
-        }
+        Finding::Leave { farthest, also, tool_m } => leaves(level, (farthest, also.as_ref()), *tool_m),
         Finding::Gain { gain, reasons } => {
             let sent = share(*gain);
             match (level, reasons.is_empty()) {
@@ -267,18 +205,6 @@ fn words(level: Level, finding: &Finding, units: Units) -> String {
     }
 }
 
-/// Which joints are sent beyond the range of their plan.
-fn beyond(outside: &[Outside]) -> String {
-    let one = |of: &Outside| {
-        let [reaches, by] = [of.reaches_rad, of.beyond_rad].map(|rad| position(of.kind, rad));
-        format!("{} to {reaches} ({by} beyond)", of.joint)
-    };
-    match outside.iter().map(one).collect::<Vec<_>>().join(", ") {
-        none if none.is_empty() => none,
-        all => format!(" Sent beyond the range of their plan, keep that free: {all}."),
-    }
-}
-
 fn because(reasons: &[Reason]) -> String {
     let one = |reason: &Reason| match reason {
         Reason::FirstCommand => "no correction of this plan was sent before",
@@ -288,40 +214,18 @@ fn because(reasons: &[Reason]) -> String {
     reasons.iter().map(one).collect::<Vec<_>>().join(", and ")
 }
 
-fn limits([broken, between]: [usize; 2], nearest: &[MarginEntry]) -> String {
-    let Some(worst) = nearest.first() else {
-        return "Without a task the limits of the arm are unknown: check the command against yours."
-            .to_owned();
+/// How far joints, of each kind one, and the tool leave the plan.
+fn leaves(level: Level, (farthest, also): (&Left, Option<&Left>), tool_m: Option<f64>) -> String {
+    let tool = tool_m.map_or(String::new(), |m| format!(", up to {} mm at the tool", mm(m)));
+    let advice = match level {
+        Level::Stop => "send less of it (--gain 0.5), or a slower plan",
+        Level::Good | Level::Caution => "keep that room free",
     };
-    let joint = worst.joint.as_ref().map_or(String::new(), |name| format!("{name} "));
-    // A position counts from the middle of its range.
-    let (by, [value, allowed]) = match worst.limit {
-        Limit::Position => ("of the way from the middle of its range", [worst.value, worst.allowed]),
-        _ => ("used", [worst.value, worst.allowed].map(f64::abs)),
+    let one = |left: &Left| {
+        format!("{} ({} at {:.1} s)", position(left.kind, left.distance_rad), left.joint, left.t_s)
     };
-    let [value, allowed] = [value, allowed].map(|value| plan::shown(worst.limit, worst.kind, value));
-    let of = if worst.limit == Limit::Position { ", the range ends at" } else { " of" };
-    let worst = format!(
-        "{joint}{}: {} {by}, {value}{of} {allowed} at {:.1} s",
-        worst.limit.name_of(worst.kind),
-        share(worst.share),
-        worst.t_s
-    );
-    let mut kinds: Vec<Limit> = nearest.iter().map(|margin| margin.limit).collect();
-    kinds.sort_unstable();
-    let kinds: Vec<&str> = kinds.into_iter().map(Limit::name).collect();
-    match (broken, between) {
-        (0, 0) => {
-            let within = if nearest[0].share > 1.0 { ", within 0.2 %" } else { "" };
-            format!("All kept{within} ({}). The nearest is {worst}.", kinds.join(", "))
-        }
-        (0, between) => format!(
-            "The plan lies at its limits, and between two points a controller's curve goes beyond {} by less than 1 %. The worst is \
-             {worst}.",
-            counted(between, "limit")
-        ),
-        (broken, _) => format!("NOT kept: {}. The worst is {worst}.", counted(broken, "limit")),
-    }
+    let far: Vec<String> = iter::once(farthest).chain(also).map(one).collect();
+    format!("It leaves the plan by up to {}{tool}: {advice}.", far.join(" and "))
 }
 
 fn trust(joints: &[JointTrust]) -> String {

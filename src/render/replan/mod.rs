@@ -3,6 +3,7 @@
 mod checks;
 mod joints;
 mod learning;
+mod limits;
 mod page;
 mod tables;
 

@@ -5,8 +5,8 @@ use super::sources;
 /// Lines of the longest file; of half the files of `src` at most; of `src` and of all Rust together.
 const LONGEST: usize = 400;
 const MEDIAN: usize = 125;
-const LIBRARY: usize = 112_000;
-const ALL: usize = 155_700;
+const LIBRARY: usize = 113_400;
+const ALL: usize = 157_200;
 
 const FOLDERS: [&str; 6] = ["src", "crates", "tests", "benches", "examples", "fuzz"];
 
