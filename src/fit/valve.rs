@@ -67,7 +67,7 @@ pub(super) fn dead_band(valve: &Signal, measured: &Track) -> Option<[Estimated; 
             let signal = |(t_s, speed): &(f64, f64)| Some((*speed, way * valve.at(t_s - delay_s)?));
             let signals: Vec<Motion> =
                 motions.iter().map(|motion| motion.iter().filter_map(signal).collect()).collect();
-            let Some((start, spread)) = line(&signals.concat()) else { continue };
+            let Some((start, spread)) = line(&signals.concat(), SAMPLES) else { continue };
             if best.as_ref().is_none_or(|(_, least, _)| spread < *least) {
                 best = Some((start, spread, signals));
             }
@@ -89,7 +89,7 @@ pub(super) fn dead_band(valve: &Signal, measured: &Track) -> Option<[Estimated; 
 fn jackknife(motions: &[Motion]) -> f64 {
     let without = |out: usize| {
         let rest = motions.iter().enumerate().filter(|(k, _)| *k != out);
-        line(&rest.flat_map(|(_, motion)| motion.iter().copied()).collect::<Vec<_>>())
+        line(&rest.flat_map(|(_, motion)| motion.iter().copied()).collect::<Vec<_>>(), SAMPLES / 3)
     };
     let starts: Option<Vec<f64>> = (0..motions.len()).map(|out| Some(without(out)?.0)).collect();
     let Some(starts) = starts.filter(|starts| starts.len() >= FEWEST) else { return f64::INFINITY };
@@ -99,9 +99,9 @@ fn jackknife(motions: &[Motion]) -> f64 {
 }
 
 /// Signal at no speed on the line through (speed, signal), and the median distance from the line, to which what lies far off counts
-/// little.
-fn line(points: &[(f64, f64)]) -> Option<(f64, f64)> {
-    if points.len() < SAMPLES {
+/// little; `None` of fewer points.
+fn line(points: &[(f64, f64)], fewest: usize) -> Option<(f64, f64)> {
+    if points.len() < fewest {
         return None;
     }
     let mut weights = vec![1.0; points.len()];

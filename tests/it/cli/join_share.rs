@@ -1,6 +1,6 @@
 //! `join` of a log in which another command of the same plan was sent: the plans are so alike that each fits where another was sent.
 
-use crate::support::{clean as done, json, run_line as hydrotrace, sample, stderr};
+use crate::support::{clean as done, json, run_line as hydrotrace, sample, stderr, stdout};
 
 /// A folder with a plan and its run, and what these lines make of them.
 fn folder(lines: &[&str]) -> tempfile::TempDir {
@@ -59,13 +59,15 @@ fn what_a_table_calls_its_plan_may_be_what_was_sent() {
 
 #[test]
 fn a_recording_that_lacks_the_beginning_or_the_end_of_the_plan_is_told() {
-    let folder = folder(&["simulate run.mcap -o whole.mcap"]);
+    let folder = folder(&["replan run.mcap --keep-plan -o next.mcap", "simulate next.mcap -o whole.mcap"]);
     let at = folder.path();
-    for (range, end) in [("--from 4", "beginning"), ("--to 22", "end")] {
-        done(at, &format!("export whole.mcap --csv {range} -o part.csv"));
-        let run = hydrotrace(at, "join part.csv --plan plan.mcap -o joined.mcap");
-        let said = stderr(&run);
-        let told = said.contains("of the plan's motion at its ") && said.contains(end);
-        assert!(run.status.code() == Some(3) && told, "{range}: {said}");
+    for (range, end) in [("--from 6", "beginning"), ("--to 24", "end")] {
+        done(at, &format!("export whole.mcap --csv --planned /command/joint_states {range} -o part.csv"));
+        let run = hydrotrace(at, "join part.csv --plan next.mcap -o joined.mcap");
+        let said = stdout(&run);
+        let told = said.contains(&format!(" s of the plan's motion at its {end}"));
+        assert!(run.status.code() == Some(3) && told, "{range}: {said}{}", stderr(&run));
+        std::fs::remove_file(at.join("joined.mcap")).unwrap();
+        std::fs::remove_file(at.join("part.csv")).unwrap();
     }
 }

@@ -31,7 +31,8 @@ fn files_and_data_hold_no_colour_even_where_it_is_asked_for() {
     let file = folder.path().join("report.txt");
     let name = file.to_str().unwrap();
     hydrotrace(&["report", DOUBTFUL, "-o", name, "--color", "always"]);
-    assert_eq!(std::fs::read(&file).unwrap(), hydrotrace(&["report", DOUBTFUL]).stdout);
+    let printed = stdout(&hydrotrace(&["report", DOUBTFUL]));
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), printed + "\nWritten by hydrotrace.\n");
     for format in ["--json", "--csv", "--markdown"] {
         let run = hydrotrace(&["report", DOUBTFUL, format, "--color", "always"]);
         assert!(!stdout(&run).contains(ESCAPE), "{format}");
