@@ -7,10 +7,6 @@ use crate::text::shell_argument;
 /// What a file is, and what to do with it: `FILE` stands there for it, `STEM` for its name without the ending.
 pub(super) type Unread = (&'static str, &'static str);
 
-/// What to do with a database that is no bag.
-pub(super) const SQL: &str = "`sqlite3 FILE .tables` names its tables, and `sqlite3 -csv -header FILE 'SELECT * FROM TABLE' > STEM.csv` makes \
-     CSV of one";
-
 /// The first bytes of each.
 const BINARY: [(&[u8], Unread); 18] = [
     (b"\x89MCAP0\r\n", ("an MCAP log", "`hydrotrace report` reads it as it is")),

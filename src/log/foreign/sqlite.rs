@@ -15,13 +15,13 @@ use super::undescribed;
 use crate::{
     atomic_file::Temporary,
     input_file,
-    log::{
-        error::LogError,
-        file::Source,
-        unread::{SQL, with_path},
-    },
+    log::{error::LogError, file::Source, unread::with_path},
     remark::{Code, Remarks},
 };
+
+/// What to do with a database that is no bag.
+const SQL: &str = "`sqlite3 FILE .tables` names its tables, and `sqlite3 -csv -header FILE 'SELECT * FROM TABLE' > STEM.csv` makes \
+     CSV of one";
 
 /// Definition of a type: its encoding and text.
 type Definitions = BTreeMap<String, (String, String)>;
