@@ -126,7 +126,7 @@ struct Args {
     #[command(subcommand)]
     command: Command,
 
-    /// Write the output even where it replaces a recording or a command
+    /// Write the output even over a recording or another program's file
     #[arg(long, global = true)]
     force: bool,
 

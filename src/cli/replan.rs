@@ -115,9 +115,14 @@ struct ChangeArgs {
 }
 
 impl ChangeArgs {
-    /// Options that hold for the next command, too: the machine, bounds, and what must not change.
-    fn words_of_next(&self, limits: Option<&Path>) -> Vec<String> {
+    /// Options that hold for the next command, too: a task that no log holds, the machine, bounds, and what must not change.
+    fn words_of_next(&self, task: Option<&Path>, limits: Option<&Path>) -> Vec<String> {
         let mut words = Vec::new();
+        if let Some(task) = task {
+            words.extend(["--task".to_owned(), kit::argument(task)]);
+            // Without one the plan is kept in any case.
+            words.extend(self.keep_plan.then(|| "--keep-plan".to_owned()));
+        }
         if let Some(limits) = limits {
             words.extend(["--limits".to_owned(), kit::argument(limits)]);
         }
@@ -190,13 +195,6 @@ impl Args {
         }
         Ok(replanned)
     }
-
-    /// A task that no log holds, and that its plan is kept.
-    fn task_of_next(&self) -> Vec<String> {
-        let Some(task) = &self.task else { return Vec::new() };
-        let keeps = self.change.keep_plan.then(|| "--keep-plan".to_owned());
-        ["--task".to_owned(), kit::argument(task)].into_iter().chain(keeps).collect()
-    }
 }
 
 impl Run for Args {
@@ -205,7 +203,7 @@ impl Run for Args {
         let target = Target::stdout(self.json);
         let (reading, changing) = (
             self.sent.words_of_next(),
-            [self.task_of_next(), self.change.words_of_next(self.limits.as_deref())].concat(),
+            self.change.words_of_next(self.task.as_deref(), self.limits.as_deref()),
         );
         let again = again(std::env::args_os().skip(1));
         let lines = next::Words { again: &again, reading: &reading, changing: &changing };

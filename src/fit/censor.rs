@@ -31,7 +31,12 @@ const EXPLAINS: f64 = 0.98;
 
 /// The least that each limit may be: what was reached, and of a joint that swings beyond the speed that its valve leaves, as its model
 /// does, that speed.
-pub(super) fn least(problem: &Problem, x: &[f64], reached: [f64; 4], workspace: &mut Workspace) -> [f64; 4] {
+pub(super) fn least_limits(
+    problem: &Problem,
+    x: &[f64],
+    reached: [f64; 4],
+    workspace: &mut Workspace,
+) -> [f64; 4] {
     let mut least = reached;
     if problem.shown.between.swing {
         let limits = least.iter_mut().zip(fastest(problem, x, workspace)).enumerate();

@@ -2,7 +2,7 @@
 
 use super::{
     Character, Estimated, HeldOut, Oscillation,
-    censor::{ASKED, least, seen, sustained},
+    censor::{ASKED, least_limits, seen, sustained},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
     feed_forward::FeedForward,
@@ -110,9 +110,9 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         found = problem.descend(found.x, ROUNDS, &mut workspace);
         problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);
     }
-    let reached = least(&problem, &found.x, reached, &mut workspace);
+    let least = least_limits(&problem, &found.x, reached, &mut workspace);
     for i in (0..4).filter(|i| problem.shown.limits[*i]) {
-        found.x[LIMITS + i] = found.x[LIMITS + i].max(priors.of(LIMITS + i).place(reached[i]));
+        found.x[LIMITS + i] = found.x[LIMITS + i].max(priors.of(LIMITS + i).place(least[i]));
     }
     let mut knowledge = Knowledge::new(&problem, &found.x, found.scale_rad, &mut workspace);
     let place = telling(runs, ENOUGH_TO_HOLD_OUT_S);
@@ -127,7 +127,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     knowledge.judge(calm, skill.held_out_r2, skill.unexplained_share(found.scale_rad));
     let nothing = skill.explains_nothing() || stands(runs);
     let skill = if nothing { skill.without_model(&held_out) } else { skill };
-    let joint = report(named, &problem, &found, &knowledge, reached, samples, &skill);
+    let joint = report(named, &problem, &found, &knowledge, least, samples, &skill);
     let joint = rivals.iter().fold(joint, JointFit::with_rival);
     let joint = if nothing { joint.without_model() } else { joint };
     let ratios = skill.starts.iter().flatten().filter_map(HeldOutStart::ratio).collect();
@@ -222,7 +222,7 @@ fn report(
     problem: &Problem,
     found: &Estimate,
     knowledge: &Knowledge,
-    reached: [f64; 4],
+    least: [f64; 4],
     samples: usize,
     skill: &Skill,
 ) -> JointFit {
@@ -232,7 +232,7 @@ fn report(
     };
     let told = sustained(problem, &found.x, problem.shown.limits);
     let limit = |i: usize| {
-        let bound = Some(reached[i]);
+        let bound = Some(least[i]);
         if problem.shown.limits[i] && told.get(i).is_none_or(|told| *told) {
             let value = problem.priors.of(LIMITS + i).value(found.x[LIMITS + i]);
             Estimated { lower_bound: bound, ..one(LIMITS + i, value, discrepancy::LIMIT[i]) }

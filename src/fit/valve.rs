@@ -33,7 +33,7 @@ const APART_S: f64 = 0.5;
 const FEWEST: usize = 3;
 
 /// A number that is known no better has no interval: deviation of its logarithm.
-const VAGUE: f64 = 2.0;
+const TOO_VAGUE: f64 = 2.0;
 
 /// Rounds in which the weights of points settle, and the distance by the median one from which they fall.
 const ROUNDS: usize = 10;
@@ -77,7 +77,7 @@ pub(super) fn dead_band(valve: &Signal, measured: &Track) -> Option<[Estimated; 
         let reach = (1.96 * deviation).exp();
         Some(Estimated {
             value: Some(start),
-            interval: (deviation < VAGUE).then_some([start / reach, start * reach]),
+            interval: (deviation < TOO_VAGUE).then_some([start / reach, start * reach]),
             identified: deviation < 0.3,
             ..Estimated::default()
         })

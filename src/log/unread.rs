@@ -28,14 +28,8 @@ const BINARY: [(&[u8], Unread); 18] = [
     (b"ULog", ("a PX4 ULog", "`pip install pyulog`, then `ulog2csv FILE` makes CSV of it")),
     (b"PK\x03\x04", ("a spreadsheet or an archive", "save the sheet as CSV, or unpack the archive")),
     (b"\xd0\xcf\x11\xe0", ("an old spreadsheet", "save the sheet as CSV")),
-    (
-        b"MATLAB 5.0 MAT-file",
-        ("a MATLAB file", "`writetimetable` or `writetable` makes CSV of its variables"),
-    ),
-    (
-        b"MATLAB 7.3 MAT-file",
-        ("a MATLAB file", "`writetimetable` or `writetable` makes CSV of its variables"),
-    ),
+    (b"MATLAB 5.0 MAT-file", MATLAB),
+    (b"MATLAB 7.3 MAT-file", MATLAB),
     (
         b"\x89HDF\r\n",
         (
@@ -67,6 +61,8 @@ const BINARY: [(&[u8], Unread); 18] = [
         ("what git-LFS keeps in place of the file", "`git lfs pull` in its folder fetches the file itself"),
     ),
 ];
+
+const MATLAB: Unread = ("a MATLAB file", "`writetimetable` or `writetable` makes CSV of its variables");
 
 const PICKLE: Unread = (
     "a pickle of Python",

@@ -56,18 +56,22 @@ impl Setup {
     /// Whether a joint, or the arm, has a limit of the quantity.
     pub fn is_limited(&self, limit: Limit) -> bool {
         let finite = |of: &dyn Fn(usize) -> f64| (0..self.joint_count()).any(|joint| of(joint).is_finite());
-        let cylinders = || self.arm.hydraulics.cylinders().iter().flatten();
         match limit {
             Limit::Position => self.limits.iter().any(|own| own.range().is_some()),
             Limit::Speed => finite(&|joint| self.limits[joint].speed_rad_s),
             Limit::Acceleration => finite(&|joint| self.limits[joint].acceleration_rad_s2),
             Limit::Jerk => finite(&|joint| self.limits[joint].jerk_rad_s3),
             Limit::Torque => finite(&|joint| self.limits[joint].torque_n_m),
-            Limit::RodSpeed => finite(&|joint| {
-                self.arm.hydraulics.cylinders()[joint]
-                    .map_or(f64::INFINITY, |_| self.limits[joint].rod_speed_m_s[0])
-            }),
-            Limit::RodForce => cylinders().any(|own| own.push_n().is_finite()),
+            Limit::RodSpeed => {
+                let own = self.limits.iter().zip(self.arm.hydraulics.cylinders());
+                let mut own =
+                    own.filter(|(_, cylinder)| cylinder.is_some()).flat_map(|(own, _)| own.rod_speed_m_s);
+                own.any(f64::is_finite)
+            }
+            Limit::RodForce => {
+                let cylinders = self.arm.hydraulics.cylinders().iter().flatten();
+                cylinders.flat_map(|own| [own.push_n(), own.pull_n()]).any(f64::is_finite)
+            }
             Limit::PumpFlow => self.arm.hydraulics.pump_flow_m3_s().is_finite(),
             Limit::ToolSpeed => self.tool_speed_m_s.is_finite(),
         }

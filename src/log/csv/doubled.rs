@@ -14,8 +14,8 @@ use crate::remark::{Code, Remarks};
 const FEWEST: usize = 8;
 const LEAST: usize = 3;
 
-/// Share of rows with the time of the row before that repeat all of it, where rows were written twice. Those of a clock that is coarser than
-/// the rows do not.
+/// Share of rows with the time of the row before that repeat all of it, where rows were written twice, at instants at which values change.
+/// Those of a clock that is coarser than the rows do not, and at rest both do.
 const WRITTEN_TWICE: f64 = 0.99;
 
 /// The table without the rows that repeat the row before; `None` where they were not written twice.
@@ -48,17 +48,25 @@ pub(super) fn once(file: &str, text: &[u8], options: &CsvOptions, remarks: &mut 
 fn repeats(file: &str, text: &[u8], options: &CsvOptions) -> Option<Vec<u64>> {
     let (dialect, head) = looked_at(file, text, options)?;
     let times = times(&head, options);
-    let (mut rows, mut again, mut repeats) = (Rows::new(text, dialect.separator), 0_usize, Vec::new());
+    let values: Vec<usize> = (0..head.names.len()).filter(|at| !times.contains(at)).collect();
+    let (mut rows, mut repeats) = (Rows::new(text, dialect.separator), Vec::new());
     let (mut record, mut before) = (ByteRecord::new(), ByteRecord::new());
+    let (mut changes, mut twice, mut again) = (false, 0_usize, 0_usize);
     while let Some(line) = rows.next(&mut record) {
         if line > head.first_line {
             let same = record == before;
-            again += usize::from(same || times.iter().all(|at| record.get(*at) == before.get(*at)));
+            if same || times.iter().all(|at| record.get(*at) == before.get(*at)) {
+                changes |= !same;
+                again += usize::from(changes);
+                twice += usize::from(changes && same);
+            } else {
+                changes = values.is_empty() || values.iter().any(|at| record.get(*at) != before.get(*at));
+            }
             repeats.extend(same.then_some(line));
         }
         std::mem::swap(&mut record, &mut before);
     }
-    (repeats.len() as f64 >= WRITTEN_TWICE * again as f64).then_some(repeats)
+    (twice > 0 && twice as f64 >= WRITTEN_TWICE * again as f64).then_some(repeats)
 }
 
 /// The columns that say when a row was; all of a table that calls none so.
@@ -89,6 +97,9 @@ mod tests {
         let even: Vec<i64> = (0..20).map(|k| 20 * k).collect();
         assert_eq!((ms, codes), (even, vec![Code::DuplicateStamp]));
         let (ms, codes) = read(|k| row(f64::from(k / 4), k));
+        assert_eq!((ms.len(), codes), (40, vec![Code::Guessed]));
+        // Nor those of one at which the joint mostly rests.
+        let (ms, codes) = read(|k| row(f64::from(k / 4), k.clamp(20, 23)));
         assert_eq!((ms.len(), codes), (40, vec![Code::Guessed]));
         let few = "t_s,J1_target_deg,J1_actual_deg\n0,0,0\n0,0,0\n0.1,1,1\n0.1,1,1\n0.2,2,1\n0.2,2,1\n";
         let run = read_csv_bytes("a.csv", few.as_bytes(), &CsvOptions::default()).unwrap();

@@ -20,7 +20,6 @@ pub(super) fn words(finding: &Finding) -> String {
     else {
         return String::new();
     };
-
     let names = |of: &[Limit]| of.iter().map(|limit| limit.name()).collect::<Vec<_>>().join(", ");
     let steep = steep.as_ref().map_or(String::new(), |of| {
         let [own, most] = [of.acceleration_rad_s2, of.limit_rad_s2].map(|value| position(of.kind, value));
