@@ -102,7 +102,7 @@ pub(crate) struct MoeaArgs {
     )]
     problem: Vec<String>,
 
-    /// Number of objectives
+    /// Number of objectives; MW1 to MW3 have two
     #[arg(long, value_name = "M", default_value_t = 3, value_parser = value_parser!(u8).range(2..=8))]
     objectives: u8,
 
@@ -201,7 +201,10 @@ impl MoeaArgs {
     pub(crate) fn problems(&self) -> Vec<Benchmark> {
         let names = chosen(&self.problem, &benchmark::NAMES);
         let objectives = usize::from(self.objectives);
-        names.into_iter().filter_map(|name| Benchmark::named(name, objectives)).collect()
+        names
+            .into_iter()
+            .filter_map(|name| Benchmark::named(name, objectives).or_else(|| Benchmark::named(name, 2)))
+            .collect()
     }
 
     pub(crate) fn operators(&self) -> Operators {
@@ -274,6 +277,6 @@ mod tests {
         assert_eq!(chosen(&given, &benchmark::NAMES), ["WFG3", "DTLZ3"]);
         let all = ["WFG9", "All"].map(str::to_owned);
         let every = chosen(&all, &benchmark::NAMES);
-        assert_eq!((every.len(), every[0], every[1]), (16, "WFG9", "DTLZ1"));
+        assert_eq!((every.len(), every[0], every[1]), (20, "WFG9", "DTLZ1"));
     }
 }

@@ -27,6 +27,9 @@
 //!   tournaments by violation, front and crowding, and half of w takes the second parent from the
 //!   ends of the front. Survival fills surplus places by crowding
 //!   ([`Niching::filled_by_crowding`]). Where a is 1 nothing of this is drawn.
+//! * `DIFFERENCE(step 2)`: while less than a tenth of the members is feasible, the local focus and its spread act
+//!   in proportion to them, not at all if none is: infeasible members are ordered by violation, and a focus on the
+//!   least of it loses all parts of the feasible region but the first that was met.
 //! * `DIFFERENCE(step 3)`: the focus fades over the budget, with the square of the share used;
 //!   without a budget it stays at one half.
 //! * `DIFFERENCE(eq. 8, 9)`: the printed condition can hold only when all fitness values are

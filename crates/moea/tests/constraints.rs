@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::float_cmp)]
 
-use moea::{Bounds, Budget, NamedAlgorithm, Outcome, Problem, Random, Settings, optimise, silent};
+use moea::{
+    Bounds, Budget, NamedAlgorithm, Outcome, Problem, Random, Settings, benchmark::Benchmark,
+    compare::Reference, optimise, silent,
+};
 
 /// Two distances in a square of which a sliver is feasible; each constraint in a unit of its own.
 struct Sliver {
@@ -169,5 +172,31 @@ fn first_members_that_nearly_keep_a_constraint_and_long_tails_do_not_keep_a_run_
                 assert!(found.is_feasible(0), "{name}, {off:e}, seed {seed}");
             }
         }
+    }
+}
+
+/// Where a few members first meet one part of the feasible region, the focus must not take all from there.
+#[test]
+fn the_focus_misses_no_parts_of_the_feasible_region_that_are_found_without_it() {
+    for (name, objectives) in [("MW1", 2), ("MW4", 3)] {
+        let problem = Benchmark::named(name, objectives).unwrap();
+        let reference = Reference::of(&problem, 300);
+        let found = |algorithm: &str| {
+            let algorithm = NamedAlgorithm::find(algorithm).unwrap().algorithm;
+            let mut distances: Vec<f64> = (7001..7018)
+                .map(|seed| {
+                    let settings = Settings { algorithm, seed, ..Settings::default() };
+                    reference.measure(&optimise(&problem, &settings, silent).unwrap().population).igd_plus
+                })
+                .collect();
+            distances.sort_by(f64::total_cmp);
+            (distances[8], distances.iter().filter(|distance| distance.is_infinite()).count())
+        };
+        let ((focus, none), (plain, none_plain)) = (found("nsga3-fo"), found("nsga3"));
+        assert!(
+            none <= none_plain + 1,
+            "{name}: {none} of 17 runs find nothing feasible, {none_plain} without"
+        );
+        assert!(focus <= 1.25 * plain, "{name}: median IGD+ {focus}, without the focus {plain}");
     }
 }

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, f64::consts::PI};
 
-use super::{Benchmark, Family, wfg};
+use super::{Benchmark, Family, mw, wfg};
 use crate::{Random, das_dennis, direction_count};
 
 /// Most points of any front.
@@ -34,6 +34,8 @@ pub(super) fn points(problem: &Benchmark, count: usize) -> Vec<f64> {
         (Family::Dtlz, 2..=4) => scaled(directions(m, count), m, |z, _| 1.0 / length(z)),
         (Family::Dtlz, 5 | 6) => arc(m, count),
         (Family::Dtlz, _) => disconnected(m, count),
+        (Family::Mw, 4) => scaled(directions(m, count), m, |z, _| 1.0 / z.iter().sum::<f64>()),
+        (Family::Mw, _) => thinned(&mw::curve(problem.number, count), m, count),
         (Family::Wfg, 1 | 2) => {
             // Corners alone are as many as objectives.
             let count = count.max(2 * m);

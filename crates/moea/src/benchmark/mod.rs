@@ -2,6 +2,7 @@
 
 mod dtlz;
 mod front;
+mod mw;
 mod wfg;
 
 use super::{
@@ -14,6 +15,8 @@ use super::{
 pub enum Family {
     /// DTLZ1 to DTLZ7.
     Dtlz,
+    /// MW1 to MW4, with constraints.
+    Mw,
     /// WFG1 to WFG9.
     Wfg,
 }
@@ -31,30 +34,38 @@ pub struct Benchmark {
 const MOST_VARIABLES: usize = 1_000_000;
 
 /// Every name that [`Benchmark::named`] knows.
-pub const NAMES: [&str; 16] = [
-    "DTLZ1", "DTLZ2", "DTLZ3", "DTLZ4", "DTLZ5", "DTLZ6", "DTLZ7", "WFG1", "WFG2", "WFG3", "WFG4", "WFG5",
-    "WFG6", "WFG7", "WFG8", "WFG9",
+pub const NAMES: [&str; 20] = [
+    "DTLZ1", "DTLZ2", "DTLZ3", "DTLZ4", "DTLZ5", "DTLZ6", "DTLZ7", "MW1", "MW2", "MW3", "MW4", "WFG1",
+    "WFG2", "WFG3", "WFG4", "WFG5", "WFG6", "WFG7", "WFG8", "WFG9",
 ];
 
 impl Benchmark {
     /// The problem of a name such as "DTLZ3" or "wfg1" for 2 to 1000 objectives, with the
     /// usual number of variables: m + 4 for DTLZ1, m + 19 for DTLZ7, m + 9 for the other DTLZ,
-    /// m - 1 positions and 10 distances for WFG.
+    /// m - 1 positions and 10 distances for WFG. MW1 to MW3 have two objectives, MW4 up to 14; all have 15 variables.
     pub fn named(name: &str, objectives: usize) -> Option<Self> {
         let upper = name.to_ascii_uppercase();
         let (family, digits, last) = if let Some(digits) = upper.strip_prefix("DTLZ") {
             (Family::Dtlz, digits, 7)
+        } else if let Some(digits) = upper.strip_prefix("MW") {
+            (Family::Mw, digits, 4)
         } else {
             (Family::Wfg, upper.strip_prefix("WFG")?, 9)
         };
         let number: u8 = digits.parse().ok().filter(|number| (1..=last).contains(number))?;
+        let most = match (family, number) {
+            (Family::Mw, 4) => mw::VARIABLES - 1,
+            (Family::Mw, _) => 2,
+            _ => MOST_OBJECTIVES,
+        };
+        let positions = objectives.saturating_sub(1).min(most);
         let distances = match (family, number) {
             (Family::Dtlz, 1) => 5,
             (Family::Dtlz, 7) => 20,
+            (Family::Mw, _) => mw::VARIABLES - positions,
             _ => 10,
         };
-        let positions = objectives.saturating_sub(1).min(MOST_OBJECTIVES);
-        (2..=MOST_OBJECTIVES).contains(&objectives).then_some(Self {
+        (2..=most).contains(&objectives).then_some(Self {
             family,
             number,
             objectives,
@@ -64,12 +75,12 @@ impl Benchmark {
     }
 
     /// The same problem with other numbers of positions and distances; `None` where the family
-    /// does not allow them: DTLZ has m - 1 positions, WFG a multiple of it and an even number
+    /// does not allow them: DTLZ and MW have m - 1 positions, WFG a multiple of it and an even number
     /// of distances, both at least one distance; there are at most a million variables.
     pub fn with_variables(self, positions: usize, distances: usize) -> Option<Self> {
         let groups = self.objectives - 1;
         let fits = match self.family {
-            Family::Dtlz => positions == groups && distances >= 1,
+            Family::Dtlz | Family::Mw => positions == groups && distances >= 1,
             Family::Wfg => {
                 positions >= 1
                     && positions.is_multiple_of(groups)
@@ -85,6 +96,7 @@ impl Benchmark {
     pub fn name(&self) -> String {
         let family = match self.family {
             Family::Dtlz => "DTLZ",
+            Family::Mw => "MW",
             Family::Wfg => "WFG",
         };
         format!("{family}{}", self.number)
@@ -127,7 +139,7 @@ impl Problem for Benchmark {
 
     fn bounds(&self) -> Vec<Bounds> {
         match self.family {
-            Family::Dtlz => vec![(0.0, 1.0); self.variables],
+            Family::Dtlz | Family::Mw => vec![(0.0, 1.0); self.variables],
             Family::Wfg => (0..self.variables).map(|i| (0.0, 2.0 * (i as f64 + 1.0))).collect(),
         }
     }
@@ -142,6 +154,7 @@ impl Problem for Benchmark {
         }
         match self.family {
             Family::Dtlz => dtlz::evaluate(self.number, x, objectives),
+            Family::Mw => return mw::evaluate(self.number, x, objectives),
             Family::Wfg => wfg::evaluate(self.number, self.positions, x, objectives, workspace),
         }
         0.0

@@ -5,6 +5,7 @@ mod rates;
 use super::{
     direction::neighbours,
     mating::{Mating, MatingContext, Pair, Permutation, fitter, winner},
+    population::Population,
     random::Random,
 };
 
@@ -40,6 +41,8 @@ const FADE: i32 = 2;
 const IDLE: i32 = 2;
 /// Share of that in which the second parent is an end of the front.
 const ENDS: f64 = 0.5;
+/// Share of feasible members from which on the focus acts in full.
+const ENOUGH: f64 = 0.1;
 
 /// Mating with a focus.
 #[derive(Debug, Clone)]
@@ -153,8 +156,9 @@ impl Focused {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of n")]
         let in_focus = ((SHARE * n as f64).ceil() as usize).clamp(1, n.max(1));
         // DIFFERENCE(step 3): the focus fades over the budget.
-        let pull = context.progress.map_or(0.5, |progress| 1.0 - progress.clamp(0.0, 1.0).powi(FADE));
-        let idle = self.find_ends(context);
+        let fading = context.progress.map_or(0.5, |progress| 1.0 - progress.clamp(0.0, 1.0).powi(FADE));
+        let acts = if self.focus == Focus::Signed { 1.0 } else { share_that_acts(population) };
+        let (pull, idle) = (fading * acts, self.find_ends(context) * acts);
         self.permutation.draw(population, children.div_ceil(2), rng, &mut self.first);
         for &drawn in &self.first {
             let first = if happens(idle, rng) { winner(context, drawn, rng.below(n)) } else { drawn };
@@ -192,6 +196,16 @@ impl Focused {
     }
 }
 
+/// How much of the focus acts: all of it once a tenth of the members is feasible.
+///
+/// Infeasible members are ordered by violation alone. Mated by that order, all come from the few that first
+/// met one part of the feasible region, and other parts are never found.
+fn share_that_acts(population: &Population) -> f64 {
+    let n = population.len();
+    let feasible = (0..n).filter(|&i| population.is_feasible(i)).count();
+    (feasible as f64 / (ENOUGH * n as f64).max(f64::MIN_POSITIVE)).min(1.0)
+}
+
 /// Draws nothing for an event that cannot happen.
 fn happens(probability: f64, rng: &mut Random) -> bool {
     probability > 0.0 && rng.unit() < probability
@@ -200,7 +214,7 @@ fn happens(probability: f64, rng: &mut Random) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Niching, Population, Ranking, Survival, das_dennis, random::Stream};
+    use crate::{Niching, Ranking, Survival, das_dennis, random::Stream};
 
     /// Pairs of a focus, and the next random number, for members on three objectives' directions.
     fn pairs(focus: Focus, population: &Population) -> (Vec<Pair>, f64) {

@@ -137,4 +137,18 @@ for m, n in [(2, 40), (3, 40), (3, 80), (4, 40)]:
         kept = survivors(LeastHypervolumeContributionSurvival(), f.copy(), keep)
         out["survival"].append({"algorithm": "sms-emoa", "f": f.tolist(), "keep": keep, "kept": kept})
 
+for name, m in [("mw1", 2), ("mw2", 2), ("mw3", 2), ("mw4", 2), ("mw4", 3), ("mw4", 5)]:
+    problem = get_problem(name, n_var=15, **({"n_obj": m} if name == "mw4" else {}))
+    x = random.random((20, 15))
+    f, g = problem.evaluate(x, return_values_of=["F", "G"])
+    out["problems"].append(
+        {
+            "name": name.upper(),
+            "positions": m - 1,
+            "x": x.tolist(),
+            "f": f.tolist(),
+            "violation": np.maximum(g, 0.0).sum(axis=1).tolist(),
+        }
+    )
+
 json.dump(out, sys.stdout)
