@@ -84,6 +84,8 @@ pub enum Code {
     NotSupported,
     /// Something that the data do not say, taken from how they look.
     Guessed,
+    /// Dates in which the day or the month may come first.
+    DateOrder,
     /// Links without a mass, whose joints so need no torque.
     NoMass,
     /// Two key points in a row that are one, where the arm stops.
@@ -96,6 +98,8 @@ pub enum Code {
     InactiveBound,
     /// Limits that are judged between runs of different plans.
     OtherPlan,
+    /// Runs of so few days that what differs from day to day is not known.
+    FewDays,
     /// Files that look like a run each, read as one.
     SeveralRuns,
     /// Both sides of a comparison, or plan and measurement, are one.

@@ -1,6 +1,9 @@
 //! A stretch of a run, by the time that its reports show.
 
-use crate::units::{NS_PER_S, nanoseconds};
+use crate::{
+    series::{Series, Track},
+    units::{NS_PER_S, nanoseconds},
+};
 
 /// A stretch of a run, counted from the run's first sample; both ends belong to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +42,24 @@ impl TimeRange {
     /// Whether it begins at an instant or before.
     pub(super) fn begins_by(self, epoch_ns: i64, at_ns: i64) -> bool {
         at_ns.saturating_sub(epoch_ns) >= self.from_ns
+    }
+
+    /// The same with a margin at both ends.
+    pub(super) fn widened(self, by_ns: i64) -> Self {
+        let by_ns = by_ns.saturating_abs();
+        Self { from_ns: self.from_ns.saturating_sub(by_ns), to_ns: self.to_ns.saturating_add(by_ns) }
+    }
+
+    /// Leaves of tracks what lies in it, by their times from the run's first sample.
+    pub(super) fn cut(self, series: &mut Series) {
+        let within = |track: &Track| {
+            let ends = [self.from_ns, self.to_ns.saturating_add(1)];
+            let [from, to] = ends.map(|at_ns| track.t_s().partition_point(|t_s| nanoseconds(*t_s) < at_ns));
+            from..to
+        };
+        if series.tracks.iter().any(|track| within(track).len() < track.len()) {
+            series.tracks = series.tracks.iter().filter_map(|track| track.part(within(track))).collect();
+        }
     }
 
     /// The first and the last instant that samples of it may have on a clock that is off by `margin_ns` at most,

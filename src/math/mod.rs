@@ -1,6 +1,7 @@
 //! Small numerics with no noun of the domain in them.
 
 mod hermite;
+mod jackknife;
 mod levels;
 mod line;
 mod lowpass;
@@ -15,6 +16,7 @@ mod two_samples;
 mod whole;
 
 pub use hermite::{State, cubic, linear, quintic, smooth_step};
+pub use jackknife::jackknife;
 pub use levels::{column_levels, row_weights, step_scatter, weighted_median};
 pub use line::{Line, line};
 pub use lowpass::lowpass;

@@ -112,18 +112,11 @@ pub(super) fn concentration<'a, S: Iterator<Item = Sample>>(
     })
 }
 
-/// Averages values that begin within a moment of the first of them.
+/// Averages values, each of which begins within a moment of the one before it.
 fn events(mut blocks: Vec<(f64, f64)>, rules: &Rules) -> Vec<f64> {
     blocks.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut events = Vec::new();
-    let mut rest = blocks.as_slice();
-    while let Some(&(first_s, _)) = rest.first() {
-        let together = rest.partition_point(|block| block.0 - first_s <= rules.same_event_s);
-        let (event, later) = rest.split_at(together.max(1));
-        events.push(event.iter().map(|block| block.1).sum::<f64>() / event.len() as f64);
-        rest = later;
-    }
-    events
+    let together = blocks.chunk_by(|a, b| b.0 - a.0 <= rules.same_event_s);
+    together.map(|event| event.iter().map(|block| block.1).sum::<f64>() / event.len() as f64).collect()
 }
 
 fn test(inside: &[f64], outside: &[f64]) -> Option<ConcentrationTest> {

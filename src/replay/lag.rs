@@ -2,11 +2,9 @@
 
 use std::ops::Range;
 
-use multiversion::multiversion;
-use statrs::distribution::{ContinuousCDF, StudentsT};
-
 use super::{Rules, motion::Motion};
-use crate::math::whole;
+use crate::math::{jackknife, whole};
+use multiversion::multiversion;
 
 /// A motion that repeats itself fits as well a period later. A peak whose correlation falls short of the best by less than this, with a
 /// valley of less than this share of it between, is one with the best: of these the machine needs the nearest, a lead counting so many
@@ -36,6 +34,7 @@ pub(super) struct Speeds<'a> {
 }
 
 /// Sums for every shift from -shifts to +shifts.
+#[derive(Clone)]
 struct Correlation {
     product: Vec<f64>,
     planned_energy: Vec<f64>,
@@ -58,9 +57,14 @@ pub(super) fn lag(speeds: &Speeds, planned: &[Motion], sample_interval_s: f64, r
     let single = |one: &Correlation| one.best(rules, shift)?.0;
     let single_s: Vec<f64> = singles.iter().filter_map(single).map(|shift| shift * step_s).collect();
     let lag_s = shift.map(|shift| shift * step_s);
+    // Motions of unlike lags: neither that of all together nor the mean of their own is left out.
     let interval_s = lag_s.and_then(|lag_s| {
-        let half_s = standard_error(&single_s)?;
-        Some([lag_s - half_s, lag_s + half_s])
+        let without = |one: &Correlation| Some(total.without(one).best(rules, shift)?.0? * step_s);
+        let half_s = jackknife(&singles.iter().map(without).collect::<Option<Vec<f64>>>()?)?;
+        let (count, sum_s) = (single_s.len() as f64, single_s.iter().sum::<f64>());
+        let others_s: Vec<f64> = single_s.iter().map(|own_s| (sum_s - own_s) / (count - 1.0)).collect();
+        let (mean_s, of_mean_s) = (sum_s / count, jackknife(&others_s)?);
+        Some([(lag_s - half_s).min(mean_s - of_mean_s), (lag_s + half_s).max(mean_s + of_mean_s)])
     });
     Lag { shift_s: lag_s, correlation: Some(correlation), interval_s, motions: single_s.len() }
 }
@@ -91,12 +95,23 @@ impl Correlation {
     }
 
     fn add(&mut self, other: &Self) {
+        self.change(other, |to, from| to + from);
+    }
+
+    fn without(&self, other: &Self) -> Self {
+        let mut rest = self.clone();
+        // What is left of a difference of equals is no energy.
+        rest.change(other, |to, from| if (to - from).abs() > 1e-9 * to.abs() { to - from } else { 0.0 });
+        rest
+    }
+
+    fn change(&mut self, other: &Self, by: impl Fn(f64, f64) -> f64) {
         for (to, from) in [
             (&mut self.product, &other.product),
             (&mut self.planned_energy, &other.planned_energy),
             (&mut self.measured_energy, &other.measured_energy),
         ] {
-            to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+            to.iter_mut().zip(from).for_each(|(to, from)| *to = by(*to, *from));
         }
     }
 
@@ -208,15 +223,6 @@ fn resample(t: &[f64], x: &[f64], start_s: f64, step_s: f64, n: usize) -> Vec<f6
             x[i] + share * (x[j] - x[i])
         })
         .collect()
-}
-
-/// Half the 95 % interval of a mean (Student's t); needs three values.
-fn standard_error(values: &[f64]) -> Option<f64> {
-    let n = values.len() as f64;
-    let t = (values.len() >= 3).then(|| StudentsT::new(0.0, 1.0, n - 1.0).ok())??;
-    let mean = values.iter().sum::<f64>() / n;
-    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0);
-    Some(t.inverse_cdf(0.975) * (variance / n).sqrt())
 }
 
 #[cfg(test)]

@@ -68,20 +68,16 @@ pub(super) fn blocks(
     blocks
 }
 
-/// Blocks that begin within a moment of the first of them, summed: joints that move together are one event.
+/// Blocks, each of which begins within a moment of the one before it, summed: joints that move together are one event.
 pub(super) fn events(mut blocks: Vec<Block>, rules: &Rules) -> Vec<Block> {
     blocks.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
-    let mut events: Vec<Block> = Vec::new();
-    for block in blocks {
-        match events.last_mut().filter(|event| block.start_s - event.start_s <= rules.same_event_s) {
-            Some(event) => {
-                event.whole += block.whole;
-                event.left += block.left;
-            }
-            None => events.push(block),
-        }
-    }
-    events
+    let together = blocks.chunk_by(|a, b| b.start_s - a.start_s <= rules.same_event_s);
+    let sum = |event: &[Block]| Block {
+        start_s: event[0].start_s,
+        whole: event.iter().map(|block| block.whole).sum(),
+        left: event.iter().map(|block| block.left).sum(),
+    };
+    together.map(sum).collect()
 }
 
 /// The share over blocks; `None` without an error to explain.
@@ -139,5 +135,11 @@ mod tests {
             events(vec![block(9.0, 1.0, 0.5), block(1.0, 2.0, 1.0), block(1.9, 4.0, 1.0)], &Rules::default());
         assert_eq!(events.len(), 2);
         assert_eq!((events[0].whole, events[0].left), (6.0, 2.0));
+    }
+
+    #[test]
+    fn joints_that_start_one_after_the_other_are_one_event() {
+        let starts = (0..6).map(|k| block(0.7 * f64::from(k), 1.0, 0.0)).collect();
+        assert_eq!(events(starts, &Rules::default()).len(), 1);
     }
 }

@@ -2,7 +2,7 @@
 
 use multiversion::multiversion;
 
-use super::{PathError, Rules, cursor::Cursor};
+use super::{PathError, Rules, cursor::Cursor, tracking::LONE_S};
 use crate::series::Pair;
 
 /// Joint vectors at common instants, `[joints][n]`; those that no window needs any more are forgotten.
@@ -17,8 +17,14 @@ struct Path {
 /// Instants that are forgotten at once.
 const FORGOTTEN: usize = 4096;
 
-/// Sums over the instants: of every joint, and of their norm last.
+/// The joint with most samples, the first of those: a sparse one would hide what the others do between its stamps.
+pub(super) fn densest<'a>(pairs: &[&'a Pair]) -> Option<&'a Pair> {
+    pairs.iter().rev().max_by_key(|pair| pair.t_s.len()).copied()
+}
+
+/// Sums over the instants, each by the time it stands for: of every joint, and of their norm last.
 struct Sums {
+    time_s: f64,
     squares: Vec<f64>,
     peaks: Vec<f64>,
     timed: Vec<f64>,
@@ -28,15 +34,15 @@ struct Sums {
 ///
 /// For every measured joint vector the nearest point on the planned polyline in joint space is
 /// sought within [`Rules::path_window_s`]; the components of that distance are each joint's.
-/// Taken at the first joint's stamps, thinned to about [`Rules::path_rate_hz`], where every joint has
+/// Taken at the stamps of the joint with most of them, thinned to about [`Rules::path_rate_hz`], where every joint has
 /// data, and not where what is followed lies before or after what the log has of the plan; `None` where there is none.
 /// O(n window).
 pub(super) fn path_error(pairs: &[&Pair], rules: &Rules) -> Option<(Vec<PathError>, PathError)> {
-    let lead = pairs.first()?;
+    let lead = densest(pairs)?;
     let none = || vec![Vec::new(); pairs.len()];
     let mut path = Path { t_s: Vec::new(), planned_rad: none(), measured_rad: none(), connected: Vec::new() };
     let zeros = || vec![0.0; pairs.len() + 1];
-    let mut sums = Sums { squares: zeros(), peaks: zeros(), timed: zeros() };
+    let mut sums = Sums { time_s: 0.0, squares: zeros(), peaks: zeros(), timed: zeros() };
     // Less than the step, so that jitter around it loses no stamps.
     let window_s = rules.path_window_s.max(0.0);
     let step_s = 0.75 / rules.path_rate_hz;
@@ -88,9 +94,9 @@ pub(super) fn path_error(pairs: &[&Pair], rules: &Rules) -> Option<(Vec<PathErro
     }
     let sample_interval_s = if all > 1 { (last_s - begins_s) / (all - 1) as f64 } else { 0.0 };
     let of = |((square, timed), peak): ((&f64, &f64), &f64)| PathError {
-        rms: (square / n as f64).sqrt(),
+        rms: (square / sums.time_s).sqrt(),
         peak: *peak,
-        timed_rms: (timed / n as f64).sqrt(),
+        timed_rms: (timed / sums.time_s).sqrt(),
         samples: n,
         sample_interval_s,
     };
@@ -102,22 +108,30 @@ pub(super) fn path_error(pairs: &[&Pair], rules: &Rules) -> Option<(Vec<PathErro
 impl Sums {
     /// Takes in instant `i`, whose nearest point of the plan is a share of the piece from `at` on.
     fn add(&mut self, path: &Path, i: usize, (at, share): (usize, f64)) {
-        let (norm, mut square) = (path.planned_rad.len(), 0.0);
+        let (norm, weight_s, mut square) = (path.planned_rad.len(), path.weight_s(i), 0.0);
+        self.time_s += weight_s;
         for j in 0..norm {
             let off = path.offset(i, j, at, share);
             square += off * off;
-            self.squares[j] += off * off;
+            self.squares[j] += weight_s * off * off;
             self.peaks[j] = self.peaks[j].max(off.abs());
             let now = path.offset(i, j, i, 0.0);
-            self.timed[j] += now * now;
-            self.timed[norm] += now * now;
+            self.timed[j] += weight_s * now * now;
+            self.timed[norm] += weight_s * now * now;
         }
-        self.squares[norm] += square;
+        self.squares[norm] += weight_s * square;
         self.peaks[norm] = self.peaks[norm].max(square.sqrt());
     }
 }
 
 impl Path {
+    /// Half the way to the neighbours in the same stretch.
+    fn weight_s(&self, i: usize) -> f64 {
+        let goes_on = |to: usize| self.connected.get(to).is_some_and(|connected| *connected);
+        let (first, last) = (i - usize::from(i > 0 && self.connected[i]), i + usize::from(goes_on(i + 1)));
+        (0.5 * (self.t_s[last] - self.t_s[first])).max(LONE_S)
+    }
+
     fn forget(&mut self, instants: usize) {
         self.t_s.drain(..instants);
         self.connected.drain(..instants);
@@ -240,5 +254,42 @@ mod tests {
         later.t_s = later.t_s.iter().map(|t| t + 100.0).collect();
         assert_eq!(path_error(&[&pair(10, 0.0, 0.0), &later], &Rules::default()), None);
         assert_eq!(path_error(&[], &Rules::default()), None);
+    }
+
+    /// Every `every`-th sample of a pair.
+    fn thinned(pair: &Pair, keeps: impl Fn(usize) -> bool) -> Pair {
+        let kept: Vec<usize> = (0..pair.t_s.len()).filter(|&i| keeps(i)).collect();
+        let of = |values: &[f64]| kept.iter().map(|&i| values[i]).collect::<Vec<f64>>();
+        Pair {
+            t_s: of(&pair.t_s).into(),
+            planned: of(&pair.planned),
+            measured: of(&pair.measured),
+            segments: std::iter::once(0..kept.len()).collect(),
+            planned_velocity: None,
+            ..pair.clone()
+        }
+    }
+
+    #[test]
+    fn a_joint_that_is_logged_seldom_hides_nothing_of_the_others() {
+        let mut kicked = pair(500, 0.0, 0.0);
+        kicked.measured[420..440].iter_mut().for_each(|at| *at += 0.2);
+        let seldom = thinned(&pair(500, 0.0, 0.0), |i| i % 100 == 0);
+        let peak = |pairs: &[&Pair]| path_error(pairs, &Rules::default()).unwrap().1.peak;
+        let [one, other] = [peak(&[&seldom, &kicked]), peak(&[&kicked, &seldom])];
+        assert!(one > 0.1 && (one - other).abs() < 1e-12, "{one} {other}");
+    }
+
+    #[test]
+    fn a_logger_that_slows_down_at_rest_changes_no_mean() {
+        let dense = pair(500, 0.213, 0.0);
+        let slow_at_rest = thinned(&dense, |i| i < 800 || i % 20 == 0);
+        let rms = |pair: &Pair| path_error(&[pair], &Rules::default()).unwrap().1.timed_rms;
+        assert!(
+            (rms(&dense) / rms(&slow_at_rest) - 1.0).abs() < 0.01,
+            "{} {}",
+            rms(&dense),
+            rms(&slow_at_rest)
+        );
     }
 }

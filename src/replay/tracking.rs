@@ -16,7 +16,7 @@ pub(super) struct Sample {
 /// The 95 % quantile is taken over at most about this many samples, evenly thinned.
 const ENOUGH: usize = 250_000;
 /// A lone sample stands for next to no time.
-const LONE_S: f64 = 1e-9;
+pub(super) const LONE_S: f64 = 1e-9;
 
 /// The error of a joint, computed where it is asked for: a long run has no room for it.
 pub(super) fn samples(pair: &Pair) -> impl Iterator<Item = Sample> + Clone {

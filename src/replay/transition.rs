@@ -81,7 +81,8 @@ pub(super) fn transition(
         error_area: inside.iter().map(|s| s.weight_s * s.error_rad.abs()).sum(),
         rms_error: (square / time_s).sqrt(),
         overshoot: inside[peak..].iter().map(|s| -sign * s.error_rad).fold(0.0, f64::max),
-        settling_time_s: settled_s(&inside, peak, band_rad, rules).map(|at_s| at_s - planned_s),
+        settling_time_s: settled_s(&inside, peak, band_rad, rules)
+            .map(|at_s| at_s.max(planned_s) - planned_s),
         window_s: [planned_s, end_s],
         samples: inside.len(),
         time_resolution_s: if steps.is_empty() { signals.sample_interval_s } else { median(steps) }
@@ -89,11 +90,11 @@ pub(super) fn transition(
     }
 }
 
-/// When the error enters the band for long enough after its peak, the start if the peak lies in
+/// When the error enters the band for long enough after its peak, the earliest of all times if the peak lies in
 /// the band; `None` if it does not before the window ends.
 fn settled_s(inside: &[Sample], peak: usize, band_rad: f64, rules: &Rules) -> Option<f64> {
     if inside[peak].error_rad.abs() <= band_rad {
-        return Some(inside[0].t_s);
+        return Some(f64::NEG_INFINITY);
     }
     let mut since_s = None;
     for sample in &inside[peak..] {

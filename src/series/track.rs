@@ -30,6 +30,9 @@ impl Series {
 
     /// Makes every sample so much earlier, s; joints that shared their stamps still do.
     pub fn earlier(&mut self, by_s: f64) {
+        if by_s == 0.0 {
+            return;
+        }
         let mut last: Option<[Arc<[f64]>; 2]> = None;
         for track in &mut self.tracks {
             let old = track.signal.shared_t_s();

@@ -8,8 +8,15 @@ use crate::units::DEGREE_RAD;
 /// Planned speed that is motion, rad/s, or m/s of joints that slide.
 const MOVES: f64 = 0.05 * DEGREE_RAD;
 
-/// Planned speed at which a plan does not end, rad/s or m/s, and how close to its end that is looked for, s.
-const CUT_SPEED: f64 = DEGREE_RAD;
+/// Planned speed at which a plan does not end, rad/s or m/s, or this share of its largest speed if that is less; and how close to its
+/// end that is looked for, s.
+const fn cut_speed(kind: JointKind) -> f64 {
+    match kind {
+        JointKind::Turns => DEGREE_RAD,
+        JointKind::Slides => 0.01,
+    }
+}
+const CUT_SHARE: f64 = 0.3;
 const CUT_S: f64 = 0.05;
 
 /// The longest time without a plan within one motion, s.
@@ -160,7 +167,9 @@ impl Broken {
             for (at, next, _, begins) in ends.filter(|(at, _, end_s, _)| (t_s[*at] - end_s).abs() <= CUT_S) {
                 let step = (position[at] - position[next]) / (t_s[at] - t_s[next]);
                 let speed = track.velocity().map_or(step, |speed| speed[at]);
-                if speed.abs() > CUT_SPEED {
+                let steps = t_s.windows(2).zip(position.windows(2));
+                let largest = steps.map(|(t, q)| ((q[1] - q[0]) / (t[1] - t[0])).abs()).fold(0.0, f64::max);
+                if speed.abs() > (CUT_SHARE * largest).clamp(MOVES, cut_speed(track.kind())) {
                     let (joint, kind) = (track.name().to_owned(), track.kind());
                     return Some(Self::Cut { joint, kind, begins, speed, at_s: t_s[at] });
                 }
@@ -385,6 +394,6 @@ mod tests {
         let halted = |other: &dyn Fn(f64) -> f64| of(12.0, 1e-3, 0.0, 100.0, other).is_some();
         assert!(halted(&rests) && of(25.0, 1e-3, 0.1, 100.0, &rests).is_some());
         assert!(!halted(&|t| 3.0 * (t - 5.0).clamp(0.0, 4.0)), "another one takes over");
-        assert!(!halted(&|t| 0.9 * t), "another one crawls on");
+        assert!(!halted(&|t| 0.9 * (t - 0.5).clamp(0.0, 12.0)), "another one crawls on");
     }
 }

@@ -3,6 +3,7 @@
 pub mod carried;
 pub mod compare;
 mod correctable;
+mod days;
 pub mod excite;
 pub mod export;
 pub mod fit;

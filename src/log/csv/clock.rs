@@ -11,7 +11,7 @@ use super::{
     head::Head,
     label::Label,
     number::{nanoseconds, number},
-    order::doubt,
+    order::{code, doubt},
     rows::Rows,
     time::{FIRST_ABSOLUTE_NS, TimeSource, with_unit},
     unit::{ARCHIVE_DAY, Measure, parse_unit},
@@ -143,7 +143,7 @@ impl Found {
     fn tell(self, head: &Head, remarks: &mut Remarks) -> TimeSource {
         let column = self.source.columns().first().map_or("", |&column| head.names[column].as_str());
         if let Some(doubt) = self.doubt {
-            remarks.add(Code::Guessed, 1, format!("time column {column:?} {doubt}"));
+            remarks.add(code(&doubt), 1, format!("time column {column:?} {doubt}"));
         }
         self.source
     }

@@ -1,9 +1,13 @@
 //! Whether the day or the month comes first in dates.
 
 use super::date::DateForm;
+use crate::remark::Code;
 
 /// Orders of day and month, as `--time-unit` says them, and how the names of their forms begin.
 const ORDERS: [(&str, &str); 2] = [("dmy", "dd/mm"), ("mdy", "mm/dd")];
+
+/// What is said of dates of another form.
+const FITS: &str = "would fit as well";
 
 /// Whether a text says the order of day and month.
 pub(super) fn is_order(text: &str) -> bool {
@@ -30,8 +34,13 @@ pub(super) fn doubt(forms: &[DateForm]) -> Option<String> {
     if let Some(other) = rest.first().filter(|other| other.name.len() == form.name.len()) {
         let order =
             order_of(other.name).map_or(String::new(), |order| format!(": --time-unit {order} says so"));
-        return Some(format!("is read as {}; {} would fit as well{order}", form.name, other.name));
+        return Some(format!("is read as {}; {} {FITS}{order}", form.name, other.name));
     }
     let unit = ["ms", "us", "ns"].get((form.counts / 3).checked_sub(1)?)?;
     Some(format!("has whole {unit} behind the seconds, without zeros before: only so does it rise"))
+}
+
+/// What kind of doubt that is.
+pub(super) fn code(doubt: &str) -> Code {
+    if doubt.contains(FITS) { Code::DateOrder } else { Code::Guessed }
 }

@@ -38,6 +38,8 @@ pub struct TableStream {
     units: Vec<Settled>,
     run: CsvRun,
     rows: u64,
+    /// Instants of the first and the last of them.
+    span_ns: Option<[i64; 2]>,
     /// Rows that are written; all, if `None`.
     only: Option<Only>,
     /// Line of the first row in what is written first; 0 afterwards.
@@ -99,6 +101,7 @@ impl TableStream {
             units,
             run,
             rows: 0,
+            span_ns: None,
             clock: LiveClock::default(),
             counts: Counts::default(),
             ends: Ends::default(),
@@ -130,6 +133,11 @@ impl TableStream {
     /// Rows so far that became samples.
     pub fn rows(&self) -> u64 {
         self.rows
+    }
+
+    /// Instants of the first row and of the last one so far.
+    pub fn span_ns(&self) -> Option<[i64; 2]> {
+        self.span_ns
     }
 
     /// Whether a header with other columns came: no later row is written.
@@ -235,7 +243,9 @@ impl TableStream {
         }
         self.ends.note(record.iter().next_back().unwrap_or_default(), dialect.decimal_comma);
         cells.stamp_ns.push(ns);
-        cells.received_ns.push(self.clock.received(ns));
+        let received_ns = self.clock.received(ns);
+        self.span_ns = Some([self.span_ns.map_or(received_ns, |[first_ns, _]| first_ns), received_ns]);
+        cells.received_ns.push(received_ns);
         for (&at, column) in &mut cells.columns {
             column.push(cell(at), line, dialect.decimal_comma);
         }

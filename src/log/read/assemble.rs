@@ -16,9 +16,7 @@ use super::{
     repeated,
     samples::{Axis, Reading, Samples, samples},
     select_topics::Choice,
-    spoilt,
-    time_base::time_base,
-    trajectories, turns, unlike, unmeasured, unset,
+    spoilt, time_base, trajectories, turns, unlike, unmeasured, unset,
     window::nothing_in,
 };
 use crate::{
@@ -42,7 +40,7 @@ pub(super) fn assemble(
     let mut remarks = std::mem::take(&mut extracted.remarks);
     // A side that was not asked for, or need not be there, is no doubt.
     let alone = (choice.planned.is_empty() || choice.measured.is_empty()).then(|| remarks.clone());
-    let (base, base_why) = time_base(&extracted, choice, options.time_base, &mut remarks)?;
+    let (base, base_why) = time_base::time_base(&extracted, choice, options.time_base, &mut remarks)?;
     remarks.extend(overlap::check(&extracted, choice.measured.iter().chain(&choice.planned), base)?);
     let plan_is_command = remark_choice(choice, options, &extracted.tables, &mut remarks);
     // Where they are the arm's, joints called x, y and z are no pose.
@@ -57,8 +55,9 @@ pub(super) fn assemble(
     let laid = |c: &&Candidate| matches!(extracted.sources[c.source].content, Content::Plans(_));
     let laid_onto = choice.planned.iter().find(laid).and(choice.measured.first()).map(|c| c.source);
     let chosen = choice.measured.iter().chain(&choice.planned);
-    let mut assembly =
-        Assembly::new(extracted, (base, options.range), (kinds, laid_onto), chosen, &mut remarks);
+    let delay_ns = options.measured_delay_ns.unwrap_or(0);
+    let on = (base, options.range.widened(delay_ns));
+    let mut assembly = Assembly::new(extracted, on, (kinds, laid_onto), chosen, &mut remarks);
     let mut pending: Vec<&Candidate> =
         choice.planned.iter().chain(beside.iter().flat_map(|(_, found)| found)).collect();
     Imported::check(&assembly.extracted.tables, options)?;
@@ -92,14 +91,14 @@ pub(super) fn assemble(
             signals.insert(wanted.role, found.iter().flat_map(signals_of).filter(kept).collect());
         }
     }
+    let delay_s = seconds_since(0, delay_ns);
+    measured.earlier(delay_s);
+    let sent = command.as_mut().map(|own| &mut own.series);
+    [&mut planned, &mut measured].into_iter().chain(sent).for_each(|series| options.range.cut(series));
     for (series, chosen) in [(&planned, &choice.planned), (&measured, &choice.measured)] {
         if series.tracks.is_empty() && options.range.cuts() && !chosen.is_empty() {
             return Err(nothing_in(options.range, &assembly.extracted, chosen));
         }
-    }
-    let delay_s = seconds_since(0, options.measured_delay_ns.unwrap_or(0));
-    if delay_s != 0.0 {
-        measured.earlier(delay_s);
     }
     let poses = if axes_slide { None } else { poses::take(&mut planned, &mut measured) };
     keep_joints(&mut planned, &options.joints)?;
@@ -196,8 +195,7 @@ impl Assembly {
         }
     }
 
-    /// The clock of a table, in place of its stamps unless these are still needed: both at once are the most that a
-    /// report ever holds.
+    /// The clock of a table, in place of its stamps unless these are still needed: both at once are the most that a report ever holds.
     fn clock(&mut self, candidate: &Candidate) -> Option<Clock> {
         let needed = self.range.cuts() || self.laid_onto == Some(candidate.source);
         let Content::Table(table) = &mut self.extracted.sources[candidate.source].content else {
@@ -240,15 +238,15 @@ impl Assembly {
         &self.extracted.topic_of(candidate.source).topic
     }
 
-    /// The samples of a field; moved out of the table unless it is `pending`.
+    /// The samples of a field, of positions with whether the caller says degrees; moved out of the table unless it is `pending`.
     fn samples(
         &mut self,
         candidate: &Candidate,
-        positions: bool,
+        positions: Option<bool>,
         pending: &[&Candidate],
         remarks: &mut Remarks,
     ) -> Vec<Samples> {
-        let name = self.topic(candidate).to_owned();
+        let (name, kinds) = (self.topic(candidate).to_owned(), &self.kinds);
         let (Content::Table(table), Some(field), Some(axis)) = (
             &mut self.extracted.sources[candidate.source].content,
             candidate.field,
@@ -257,12 +255,11 @@ impl Assembly {
             return Vec::new();
         };
         let last = !pending.iter().any(|c| c.source == candidate.source && c.field == candidate.field);
-        let unit = |joint: &str| self.kinds.unit_m(candidate.source, joint).unwrap_or(1.0);
-        samples(table, Reading { field, unit: positions.then_some(unit), last }, axis, &name, remarks)
+        let unit = |degrees| move |joint: &str| kinds.read_as((candidate.source, joint), degrees, |_| 1.0).1;
+        samples(table, Reading { field, unit: positions.map(unit), last }, axis, &name, remarks)
     }
 
-    /// The tracks of the chosen fields; of joints that several have, those of the first. Trajectories
-    /// become tracks at the stamps of the measurement.
+    /// The tracks of the chosen fields; of joints that several have, those of the first. Trajectories become tracks at the stamps of the measurement.
     fn series(
         &mut self,
         chosen: &[Candidate],
@@ -275,7 +272,7 @@ impl Assembly {
         for (place, candidate) in chosen.iter().enumerate() {
             let pending: Vec<&Candidate> =
                 chosen[place + 1..].iter().chain(pending.iter().copied()).collect();
-            let found = self.samples(candidate, true, &pending, remarks);
+            let found = self.samples(candidate, Some(degrees), &pending, remarks);
             let tracks = found.into_iter().filter_map(|one| {
                 let of_field = |kind| self.extracted.scale(candidate.source, candidate.field, kind);
                 let (kind, scale) = self.kinds.read_as((candidate.source, &one.name), degrees, of_field);
@@ -329,7 +326,7 @@ impl Assembly {
         pending: &[&Candidate],
         remarks: &mut Remarks,
     ) -> Vec<Signal> {
-        let found = self.samples(candidate, false, pending, remarks);
+        let found = self.samples(candidate, None, pending, remarks);
         let quantity = |one: &Samples| role.quantity(self.kinds.of(candidate.source, &one.name));
         let found = found.into_iter().map(|one| (quantity(&one), one));
         found.filter_map(|(quantity, one)| one.into_signal(quantity)).collect()

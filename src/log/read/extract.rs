@@ -94,7 +94,8 @@ fn read_files(
     let named = (!options.planned.is_empty() && !options.measured.is_empty()).then_some(named.as_slice());
     let of_run = |route: &Route| may_be_of_run(out, named, route);
     let all = chunks().map(|(place, held, routes)| (place, held, &**routes));
-    let window = Window::of(options.range, all, &known.specs, &of_run);
+    let window =
+        Window::of(options.range.widened(options.measured_delay_ns.unwrap_or(0)), all, &known.specs, &of_run);
     let mut work = Vec::new();
     let mut rows = vec![0_usize; known.specs.len()];
     for (place, held, routes) in chunks() {

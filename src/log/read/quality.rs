@@ -104,7 +104,7 @@ pub(super) fn of_table(topic: &str, table: &Table, remarks: &mut Remarks) {
     );
 }
 
-/// Silences of the joint that has most of them.
+/// How many silences the joint has that has most of them, and the longest of any.
 #[derive(Default)]
 pub(super) struct Gaps {
     count: u64,
@@ -115,18 +115,15 @@ pub(super) struct Gaps {
 impl Gaps {
     /// `jumps` ascend.
     pub(super) fn note(&mut self, t_s: &[f64], cuts: &[usize], jumps: &[usize]) {
-        let mut here = Self::default();
+        let mut count = 0;
         for &cut in cuts.iter().filter(|cut| jumps.binary_search(cut).is_err()) {
-            here.count += 1;
+            count += 1;
             let length_s = t_s[cut] - t_s[cut - 1];
-            if length_s > here.longest_s {
-                here.longest_s = length_s;
-                here.at_s = t_s[cut - 1];
+            if length_s > self.longest_s {
+                (self.longest_s, self.at_s) = (length_s, t_s[cut - 1]);
             }
         }
-        if here.count > self.count {
-            *self = here;
-        }
+        self.count = self.count.max(count);
     }
 
     pub(super) fn remark(&self, topic: &str, remarks: &mut Remarks) {

@@ -1,12 +1,15 @@
 //! Full turns of joints without end stops, which a sensor counts or not: they are no motion and no error.
 
-use std::f64::consts::{PI, TAU};
+use std::{
+    f64::consts::{PI, TAU},
+    ops::Range,
+};
 
 use crate::{
     arm::{names_a_cylinder, names_a_slide},
     math::{median, range},
     remark::{Code, Remarks},
-    series::{JointKind, Series, Track},
+    series::{Series, Track},
     text::shell_word,
 };
 
@@ -87,23 +90,41 @@ fn unwrap_turns(series: &mut Series, continuous: &[String], remarks: &mut Remark
     }
 }
 
-/// Moves joints declared continuous by whole turns to where the plan has them for most of the run.
+/// Moves joints declared continuous by whole turns to where the plan has them, each stretch between gaps by itself: in
+/// a gap turns are lost.
 fn bring_to_turn(planned: &Series, series: &mut Series, continuous: &[String]) {
     for track in series.tracks.iter_mut().filter(|track| track.turns()) {
         let Some(plan) = planned.track(track.name()).filter(|plan| plan.turns()) else { continue };
         if !continuous.iter().any(|name| name == track.name()) {
             continue;
         }
-        let step = track.len().div_ceil(INSTANTS).max(1);
-        let samples = track.t_s().iter().zip(track.position()).step_by(step);
-        let apart: Vec<f64> = samples.filter_map(|(t_s, q)| Some(q - plan.at(*t_s)?.position)).collect();
-        let turns = if apart.is_empty() { 0.0 } else { (median(apart) / TAU).round() };
-        if turns != 0.0
-            && let Some(moved) = track.mapped(JointKind::Turns, |q| Some((q - turns * TAU, 1.0)))
-        {
-            *track = moved;
+        let turns: Vec<Option<f64>> =
+            track.segments().iter().map(|segment| turns_apart(plan, track, segment.clone())).collect();
+        if turns.iter().flatten().all(|turns| *turns == 0.0) {
+            continue;
         }
+        // A stretch of which the plan knows nothing goes on where the one before it was.
+        let mut by = turns.iter().flatten().next().copied().unwrap_or(0.0);
+        let mut position = track.position().to_vec();
+        for (segment, turns) in track.segments().iter().zip(turns) {
+            by = turns.unwrap_or(by);
+            position[segment.clone()].iter_mut().for_each(|q| *q -= by * TAU);
+        }
+        *track = with_positions(track, position).unwrap_or_else(|| track.clone());
     }
+}
+
+/// Whole turns from the plan to a stretch of a track, in the median; `None` where the plan knows nothing of it.
+fn turns_apart(plan: &Track, track: &Track, stretch: Range<usize>) -> Option<f64> {
+    let step = stretch.len().div_ceil(INSTANTS).max(1);
+    let samples = track.t_s()[stretch.clone()].iter().zip(&track.position()[stretch]).step_by(step);
+    let apart: Vec<f64> = samples.filter_map(|(t_s, q)| Some(q - plan.at(*t_s)?.position)).collect();
+    (!apart.is_empty()).then(|| (median(apart) / TAU).round())
+}
+
+fn with_positions(track: &Track, position: Vec<f64>) -> Option<Track> {
+    let cuts: Vec<usize> = track.segments().iter().skip(1).map(|s| s.start).collect();
+    Track::new(track.name(), track.t_s(), position, &cuts).ok()
 }
 
 /// Number of steps between neighbouring samples of about a full turn.
@@ -123,8 +144,7 @@ fn unwrapped(track: &Track) -> Option<Track> {
         previous = Some(q);
         q + turns_rad
     });
-    let cuts: Vec<usize> = track.segments().iter().skip(1).map(|s| s.start).collect();
-    Track::new(track.name(), track.t_s(), position.collect(), &cuts).ok()
+    with_positions(track, position.collect())
 }
 
 #[cfg(test)]
@@ -192,6 +212,22 @@ mod tests {
             let sides = &mut [("planned", &mut planned), ("measured", &mut measured)];
             assert!(unwrap_sides(sides, &[], &mut remarks).is_empty(), "{name}");
             assert_eq!(planned, of());
+        }
+    }
+
+    #[test]
+    fn a_turn_that_is_lost_in_a_gap_is_undone_on_both_sides_of_it() {
+        let plan = |t: f64| 3.0 * t;
+        let gone = |t: &f64| !(2.0..3.5).contains(t);
+        let t_s: Vec<f64> = (0..700).map(|k| 0.01 * f64::from(k)).filter(gone).collect();
+        let angles: Vec<f64> = t_s.iter().map(|t| plan(*t).rem_euclid(TAU)).collect();
+        let mut measured = Series { tracks: vec![Track::new("a", t_s, angles, &[200]).unwrap()] };
+        let mut planned = Series::sampled("a", 700, plan);
+        let sides = &mut [("planned", &mut planned), ("measured", &mut measured)];
+        unwrap_sides(sides, &["a".into()], &mut Remarks::default());
+        let track = &measured.tracks[0];
+        for (t_s, came) in track.t_s().iter().zip(track.position()) {
+            assert!((plan(*t_s) - came).abs() < 1e-9, "{t_s} s: {came}");
         }
     }
 }

@@ -112,10 +112,11 @@ pub(super) fn copy_files<W: Write + Seek>(
     writer: &mut mcap::Writer<W>,
     file: &ScannedFile<'_>,
     replaced: &[&str],
-) -> Result<(), CopyError> {
+) -> Result<usize, CopyError> {
     let kept = |name: &str| !replaced.contains(&name);
-    let (layout, mut data) = (&file.layout, Vec::new());
+    let (layout, mut data, mut attached) = (&file.layout, Vec::new(), 0);
     for attachment in layout.attachments.iter().filter(|file| kept(&file.name)) {
+        attached += 1;
         file.source.read(attachment.data, &mut data)?;
         writer.attach(&mcap::Attachment {
             log_time: attachment.log_time_ns,
@@ -131,7 +132,7 @@ pub(super) fn copy_files<W: Write + Seek>(
             metadata: one.entries.clone(),
         })?;
     }
-    Ok(())
+    Ok(attached)
 }
 
 /// Defines a channel of the old log in the new one; `None` if the old log does not define it.

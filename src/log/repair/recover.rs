@@ -63,7 +63,7 @@ pub fn recover(logs: &[PathBuf], output: &Path) -> Result<Recovered, LogError> {
         doubtful: 0,
         blocks: log.files.iter().map(|file| file.layout.blocks.len()).sum(),
         dropped_blocks: 0,
-        attachments: log.files.iter().map(|file| file.layout.attachments.len()).sum(),
+        attachments: 0,
         remarks,
     };
     let mut is_nothing = false;
@@ -107,7 +107,7 @@ fn copy<W: Write + Seek>(
     for file in &files {
         file.remark_damage(&mut saved.remarks);
         // Parts of a run each tell the same of it.
-        copy_files(&mut writer, file, &kept)?;
+        saved.attachments += copy_files(&mut writer, file, &kept)?;
         let layout = &file.layout;
         let names = layout.attachments.iter().map(|one| one.name.as_str());
         kept.extend(names.chain(layout.metadata.iter().map(|one| one.name.as_str())));

@@ -64,6 +64,7 @@ fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Smaller => "smaller",
         Verdict::Larger => "larger",
+        Verdict::Mixed => "mixed",
         Verdict::NotShown => "not shown",
         Verdict::Equal => "equal",
         Verdict::TooFew => "too few",

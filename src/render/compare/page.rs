@@ -95,6 +95,7 @@ fn change(comparison: &Comparison) -> Markup {
     let (class, headline) = match comparison.verdict {
         Verdict::Smaller => ("good", "Peaks became smaller"),
         Verdict::Larger => ("bad", "Peaks became larger"),
+        Verdict::Mixed => ("open", "Most changed one way, a few by much the other way"),
         Verdict::NotShown => ("open", "No change shown"),
         Verdict::Equal => ("open", "Nothing changed"),
         Verdict::TooFew => ("open", "Too few to tell"),

@@ -67,8 +67,9 @@ fn answers(comparison: &Comparison) -> Vec<String> {
 /// Joints whose own interval leaves out zero, where not all do what is said of all.
 fn joints(comparison: &Comparison, peaks: &[&Summary]) -> Option<String> {
     let by_runs = peaks.iter().any(|peak| peak.by_runs.is_some());
+    let clear = comparison.clear_joints();
     let said = |summary: &Summary| {
-        let [low, high] = summary.interval_95.filter(|_| summary.leaves_out_zero(by_runs))?;
+        let [low, high] = summary.interval_95?;
         let Scope::Joint(joint) = &summary.scope else { return None };
         let (dimension, kind) = (summary.measure.dimension, kind(comparison, &summary.scope));
         let shown = |value: f64| signed(value, |value| with_unit(dimension, kind, value));
@@ -76,7 +77,8 @@ fn joints(comparison: &Comparison, peaks: &[&Summary]) -> Option<String> {
         Some((if high < 0.0 { Verdict::Smaller } else { Verdict::Larger }, text))
     };
     let of = |key: &str| -> Vec<(Verdict, String)> {
-        comparison.summaries.iter().filter(|summary| summary.measure.key == key).filter_map(said).collect()
+        let own = clear.iter().copied().filter(|summary| summary.measure.key == key);
+        own.filter_map(said).collect()
     };
     let (of_peaks, of_delays) = (of(PEAK_ERROR), of(ONSET_DELAY));
     let alike = |verdict: &Verdict| peaks.iter().all(|peak| peak.verdict == *verdict);
@@ -102,8 +104,8 @@ fn of_few_runs(peaks: &[&Summary]) -> Option<String> {
         matches!(peak.verdict, Verdict::Smaller | Verdict::Larger) && peak.by_runs.is_none()
     };
     peaks.iter().find(shown).map(|_| {
-        "This is of the starts of these runs: what differs from run to run, such as oil and load, is in it. Three runs a side tell \
-         it apart (--more-before, --more-after)."
+        "This is of the starts of these runs: it may come from what differs from run to run, such as oil and load, which interval and \
+         p do not count. Three runs a side tell it apart (--more-before, --more-after)."
             .to_owned()
     })
 }
@@ -148,6 +150,13 @@ fn verdict(peak: &Summary, kind: JointKind) -> String {
     match peak.verdict {
         Verdict::Smaller => format!("The {what} became smaller: {numbers}; {counts}."),
         Verdict::Larger => format!("The {what} became larger: {numbers}; {counts}."),
+        Verdict::Mixed => {
+            let (most, few) =
+                if peak.smaller > peak.larger { ("smaller", "larger") } else { ("larger", "smaller") };
+            format!(
+                "The {what} became {most} at most transitions, and so much {few} at a few that the mean says the opposite: {numbers}; {counts}."
+            )
+        }
         Verdict::NotShown if peak.interval_95.is_some_and(|[low, high]| low > 0.0 || high < 0.0) => format!(
             "Whether the {what} changed is open, its interval says so and the test by ranks does not: {numbers}; {counts}."
         ),

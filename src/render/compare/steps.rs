@@ -44,6 +44,10 @@ pub(super) fn steps(
             "Take the change back, or find out what else differs. Where the error arises now:".to_owned(),
             Some(report()),
         ),
+        (None, Verdict::Mixed) => {
+            let few = "Look at the few transitions that changed most against the others, in the table below. Where the error arises after the change:";
+            (few.to_owned(), Some(report()))
+        }
         (None, Verdict::NotShown | Verdict::Equal | Verdict::TooFew) => (
             "See whether it was worth it: where the error arises after the change:".to_owned(),
             Some(report()),

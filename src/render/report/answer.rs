@@ -4,7 +4,7 @@ use super::{
     method::method,
     resting::at_rest,
     steps::{LEARNT, fitted, named, replanned, told, without, words},
-    tables::{self, saturates, stray, verdicts},
+    tables::{self, rate, saturates, stray, verdicts},
     together::Together,
     tool, why,
 };
@@ -32,10 +32,12 @@ const SOON_S: f64 = 0.2;
 /// What a reader wants to know first; how the numbers are made too, if that is to be explained.
 pub(crate) fn answer(report: &Report, explain: bool) -> Document {
     let replay = &report.replay;
-    let interval_s = replay.joints.iter().map(|joint| joint.sample_interval_s).fold(0.0, f64::max);
-    let rate = if interval_s > 0.0 { format!(" at {:.0} Hz", 1.0 / interval_s) } else { String::new() };
-    let run =
-        format!("{:.1} s, {}{rate}", report.source.duration_s, counted(report.alignment.len(), "joint"));
+    let run = format!(
+        "{:.1} s, {}{}",
+        report.source.duration_s,
+        counted(report.alignment.len(), "joint"),
+        rate(report)
+    );
     let mut facts = vec![fact("run", run)];
     facts.extend(at_tool(report));
     facts.extend(report.fault.as_ref().map(|fault| fact("fault", told(fault).join(". "))));

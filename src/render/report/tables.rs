@@ -8,6 +8,7 @@ use super::{
     tool, why,
 };
 use crate::{
+    math::range,
     remark::Code,
     render::{
         kit::{Column, Document, Fact, Id, Section, Sentence, counted, fact, ms, spark, starts_of},
@@ -42,9 +43,12 @@ const A_CLOCK_APART_S: f64 = 3600.0;
 
 fn source_facts(report: &Report) -> Vec<Fact> {
     let source = &report.source;
-    let samples = report.alignment.iter().map(|a| a.matched).max().unwrap_or(0);
-    let interval_s = report.replay.joints.iter().map(|j| j.sample_interval_s).fold(0.0, f64::max);
-    let rate = if interval_s > 0.0 { format!(" at {:.0} Hz", 1.0 / interval_s) } else { String::new() };
+    let matched = || report.alignment.iter().map(|a| a.matched);
+    let samples = match (matched().min().unwrap_or(0), matched().max().unwrap_or(0)) {
+        (least, most) if 2 * least < most => format!("{least} to {most}"),
+        (_, most) => most.to_string(),
+    };
+    let rate = rate(report);
     // A table has no recorder beside the one that stamped it.
     let delay = source
         .recorder_delay_s
@@ -63,6 +67,17 @@ fn source_facts(report: &Report) -> Vec<Fact> {
         fact("measured", measured(source, "  ")),
         fact("clock", format!("{}{delay}{taken_off}", clock(source))),
     ]
+}
+
+/// The sampling rate, or the range of those of the joints where it differs.
+pub(super) fn rate(report: &Report) -> String {
+    let hz = || report.replay.joints.iter().map(|j| 1.0 / j.sample_interval_s).filter(|hz| hz.is_finite());
+    let [least, most] = range(hz());
+    match (hz().count(), 1.5 * least < most) {
+        (0, _) => String::new(),
+        (_, true) => format!(" at {least:.0} to {most:.0} Hz"),
+        (_, false) => format!(" at {least:.0} Hz"),
+    }
 }
 
 fn in_short(report: &Report) -> Vec<Sentence> {

@@ -280,7 +280,7 @@ fn a_p_value_is_shown_where_the_verdict_goes_by_it() {
         card.contains("while the plan moves the error is no smaller elsewhere") && !card.contains("p = "),
         "{card}"
     );
-    assert!(report_page("a", &report("task-1-run.mcap"), None, 60, &[]).contains("p = 0.163"));
+    assert!(report_page("a", &report("task-1-run.mcap"), None, 60, &[]).contains("p = 0.073"));
 }
 
 #[test]

@@ -136,6 +136,9 @@ impl<'a> Together<'a> {
             if mostly.is_none() {
                 lines.push(match self.lag_words() {
                     Some(lag) => format!("Share of {}: {lag}.", self.shift()),
+                    None if self.joints().all(|joint| joint.starts + joint.edge_starts == 0) => {
+                        "Share of lag: cannot be told, because the plan of no joint is fast enough to start a motion.".to_owned()
+                    }
                     None => format!(
                         "Share of lag: cannot be told, because no joint shows a lag of {:.0} ms or less.",
                         1e3 * self.replay.rules.lag_max_s

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::super::{Rules, cursor::Cursor};
+use super::super::{Rules, cursor::Cursor, path::densest};
 use crate::series::Pair;
 
 /// Positions beyond this are of no arm, rad or m: sums and products of lengths would overflow.
@@ -20,10 +20,10 @@ pub(super) struct Instants {
 }
 
 impl Instants {
-    /// At the first joint's stamps, thinned to about [`Rules::tool_rate_hz`], where every joint has data.
+    /// At the stamps of the joint with most of them, thinned to about [`Rules::tool_rate_hz`], where every joint has data.
     pub(super) fn of(pairs: &[&Pair], rules: &Rules) -> Self {
         let mut found = Self { joints: pairs.len(), ..Self::default() };
-        let Some(lead) = pairs.first() else { return found };
+        let Some(lead) = densest(pairs) else { return found };
         // Less than the step, so that jitter around it loses no stamps.
         let step_s = 0.75 / rules.tool_rate_hz;
         let mut cursors = vec![Cursor::default(); pairs.len()];

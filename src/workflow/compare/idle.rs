@@ -1,6 +1,6 @@
 //! Comparisons that say nothing of a change.
 
-use super::{Comparison, TransitionPair};
+use super::{Comparison, Summary, TransitionPair, summary::clear_joints};
 use crate::{remark::Code, replay::PEAK_ERROR};
 
 /// What writing and reading a table changes an error by at most, rad or m.
@@ -24,6 +24,11 @@ impl Comparison {
         } else {
             (same() && self.is_unchanged()).then_some(Idle::SameRun)
         }
+    }
+
+    /// Peak errors and start delays of the joints that clearly changed, in the order of joints.
+    pub fn clear_joints(&self) -> Vec<&Summary> {
+        clear_joints(&self.summaries, &self.rules)
     }
 
     /// Whether no peak differs by more than a table's last digit.

@@ -10,6 +10,7 @@ mod pair;
 mod pairing;
 mod plans;
 mod same;
+mod same_day;
 mod sensed;
 mod stretch;
 mod summary;
@@ -165,13 +166,16 @@ pub fn run(inputs: &Inputs) -> Result<Comparison, CompareFailure> {
     }
     sensed_alike(&joints, [&before, &after], &mut remarks);
     let summaries = summaries(&paired, &joints, &inputs.rules);
+    let by_runs = summaries.iter().any(|summary| summary.by_runs.is_some());
+    same_day::told([&before, &after], by_runs, &mut remarks);
     let pairs: Vec<TransitionPair> = paired.into_iter().map(|paired| paired.pair).collect();
     let whole_run = figures(&before, &after, &joints, &inputs.rules);
     let tool = tool(&before, &after);
     // A run that was not to move has little error, and proves nothing.
     let moves = |side: &[Report]| side.iter().all(|run| run.replay.joints.iter().any(|j| j.plan_moves));
-    let judged = if moves(&before) == moves(&after) { &whole_run[..] } else { &[] };
-    let gates = inputs.gates.judge(&pairs, &summaries, (judged, tool.as_ref()));
+    let alike = moves(&before) == moves(&after);
+    let judged = (if alike { &whole_run[..] } else { &[] }, tool.as_ref().filter(|_| alike));
+    let gates = inputs.gates.judge(&pairs, &summaries, judged);
     let runs = |side: Side| all.iter().filter(|m| m.side == side).map(|m| m.run(&joints)).collect();
     let (runs_before, runs_after): (Vec<Run>, Vec<Run>) = (runs(Side::Before), runs(Side::After));
     let same_plan = runs_after.iter().all(|run| run.same_plan);

@@ -1,6 +1,9 @@
 //! Whether two runs were asked to do the same.
 
+use std::f64::consts::TAU;
+
 use crate::{
+    math::median,
     series::{JointKind, Pair},
     workflow::same_plan::may_differ_rad,
 };
@@ -24,12 +27,22 @@ pub(super) struct PlanDifference {
 /// Compares the plans of two runs whose clocks are `offset_s` apart, give or take what a start is known
 /// to; `None` where too little of them was executed at equal times.
 pub(super) fn plan_difference(pairs: &[(&Pair, &Pair)], offset_s: f64) -> Option<PlanDifference> {
+    // A joint that began a whole turn further on does the same.
+    let with_turns = |(a, b): &(&Pair, &Pair)| {
+        let apart: Vec<f64> = instants(a, b, offset_s, 0.0).map(|at| at.difference_rad).collect();
+        let turns =
+            if a.kind == JointKind::Slides || apart.is_empty() { 0.0 } else { (median(apart) / TAU).round() };
+        turns * TAU
+    };
+    let turns_rad: Vec<f64> = pairs.iter().map(with_turns).collect();
     let mut offset_s = offset_s;
     let first_s = offset_s;
     // Gauss-Newton on the shift.
     for _ in 0..3 {
         let (mut slope, mut energy) = (0.0, 0.0);
-        for at in pairs.iter().flat_map(|(a, b)| instants(a, b, offset_s)) {
+        for at in
+            pairs.iter().zip(&turns_rad).flat_map(|((a, b), turns_rad)| instants(a, b, offset_s, *turns_rad))
+        {
             slope += at.speed_rad_s * at.difference_rad;
             energy += at.speed_rad_s * at.speed_rad_s;
         }
@@ -41,10 +54,10 @@ pub(super) fn plan_difference(pairs: &[(&Pair, &Pair)], offset_s: f64) -> Option
         offset_s += shift_s;
     }
     let (mut most, mut same, mut enough) = ([None; 2], true, !pairs.is_empty());
-    for (a, b) in pairs {
+    for ((a, b), turns_rad) in pairs.iter().zip(&turns_rad) {
         let of_kind = &mut most[usize::from(a.kind == JointKind::Slides)];
         let (mut own, mut count) = (of_kind.unwrap_or(0.0_f64), 0_usize);
-        for at in instants(a, b, offset_s) {
+        for at in instants(a, b, offset_s, *turns_rad) {
             count += 1;
             own = own.max(at.difference_rad.abs());
             same &= at.difference_rad.abs() <= may_differ_rad(at.speed_rad_s);
@@ -63,8 +76,8 @@ struct Instant {
     speed_rad_s: f64,
 }
 
-/// The plans at those stamps of the first run at which the second has one.
-fn instants(a: &Pair, b: &Pair, offset_s: f64) -> impl Iterator<Item = Instant> {
+/// The plans at those stamps of the first run at which the second has one, the first so far ahead by whole turns.
+fn instants(a: &Pair, b: &Pair, offset_s: f64, turns_rad: f64) -> impl Iterator<Item = Instant> {
     let mut segment = 0;
     let mut k = 0;
     a.t_s.iter().zip(&a.planned).filter_map(move |(t_s, a_rad)| {
@@ -83,7 +96,7 @@ fn instants(a: &Pair, b: &Pair, offset_s: f64) -> impl Iterator<Item = Instant> 
         }
         let speed_rad_s = (b.planned[next] - b.planned[k]) / (b.t_s[next] - b.t_s[k]);
         let b_rad = b.planned[k] + speed_rad_s * (at_s - b.t_s[k]);
-        Some(Instant { difference_rad: a_rad - b_rad, speed_rad_s })
+        Some(Instant { difference_rad: a_rad - turns_rad - b_rad, speed_rad_s })
     })
 }
 
@@ -113,5 +126,15 @@ mod tests {
         assert!(!found.same && (found.most[0].unwrap() - 0.005).abs() < 5e-4, "{found:?}");
         assert_eq!(plan_difference(&[(&a, &b)], 6.0), None);
         assert_eq!(plan_difference(&[], 0.0), None);
+    }
+
+    #[test]
+    fn a_joint_that_began_a_turn_further_on_has_the_same_plan() {
+        let (a, mut b) = (plan(0.0, 0.5), plan(0.0, 0.5));
+        b.planned.iter_mut().for_each(|at| *at += TAU);
+        let found = plan_difference(&[(&a, &b)], 0.0).unwrap();
+        assert!(found.same && found.most[0].unwrap() < 1e-9, "{found:?}");
+        b.kind = JointKind::Slides;
+        assert!(!plan_difference(&[(&Pair { kind: JointKind::Slides, ..a }, &b)], 0.0).unwrap().same);
     }
 }

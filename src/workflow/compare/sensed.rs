@@ -40,6 +40,7 @@ pub(super) fn sensed_alike(joints: &[String], sides: [&[Report]; 2], remarks: &m
     for name in joints {
         let [before, after] = sides.map(|reports| Sensed::of(name, reports));
         let apart = |a: f64, b: f64| a.max(b) > APART * a.min(b);
+        let sampled = before.interval_s.min(after.interval_s) > 0.0;
         let counts = before.noise.max(after.noise) > LITTLE * before.peak_error.min(after.peak_error);
         let what = if counts && apart(before.noise, after.noise) {
             let more = before.noise.max(after.noise) / before.noise.min(after.noise);
@@ -49,7 +50,7 @@ pub(super) fn sensed_alike(joints: &[String], sides: [&[Report]; 2], remarks: &m
             } else {
                 format!("the measurement has noise or a step {side}, and on the other side none at all")
             }
-        } else if apart(before.interval_s, after.interval_s) {
+        } else if sampled && apart(before.interval_s, after.interval_s) {
             let [before_hz, after_hz] = [before, after].map(|side| 1.0 / side.interval_s);
             format!("sampled at {before_hz:.0} Hz before and at {after_hz:.0} Hz after")
         } else {

@@ -7,8 +7,8 @@ use super::{
     tested::{Verdict, by_events, by_runs, events},
 };
 use crate::{
-    math::median,
-    replay::{Keyed, Kind, Metric, ONSET_DELAY, Row, Rules, Transition},
+    math::{false_discovery, median},
+    replay::{Keyed, Kind, Metric, ONSET_DELAY, PEAK_ERROR, Row, Rules, Transition},
     series::JointKind,
 };
 
@@ -76,8 +76,8 @@ const CLEARLY: f64 = 4.0;
 
 impl Summary {
     /// Whether the interval of the mean leaves out zero; that of delays in a pair of runs clearly.
-    pub fn leaves_out_zero(&self, by_runs: bool) -> bool {
-        let times = if by_runs || self.measure.key != ONSET_DELAY { 1.0 } else { CLEARLY };
+    fn leaves_out_zero(&self) -> bool {
+        let times = if self.by_runs.is_some() || self.measure.key != ONSET_DELAY { 1.0 } else { CLEARLY };
         self.interval_95.is_some_and(|[low, high]| (low + high).abs() > times * (high - low))
     }
 
@@ -85,6 +85,20 @@ impl Summary {
     pub fn least_p(&self) -> f64 {
         0.5_f64.powi(i32::try_from(self.events.saturating_sub(1)).unwrap_or(i32::MAX))
     }
+}
+
+/// Peak errors and start delays of joints that clearly changed, in order of metric: by runs at a false discovery rate of
+/// [`Rules::significance`] over all of these, in a pair of runs where the interval leaves out zero.
+pub(super) fn clear_joints<'a>(summaries: &'a [Summary], rules: &Rules) -> Vec<&'a Summary> {
+    let is_one = |s: &&Summary| {
+        matches!(s.scope, Scope::Joint(_)) && [PEAK_ERROR, ONSET_DELAY].contains(&s.measure.key)
+    };
+    let looked_at: Vec<&Summary> = summaries.iter().filter(is_one).collect();
+    let q = false_discovery(&looked_at.iter().map(|summary| summary.p_value).collect::<Vec<_>>());
+    let clear = |(summary, q): &(&Summary, f64)| {
+        summary.leaves_out_zero() && (summary.by_runs.is_none() || *q < rules.significance)
+    };
+    looked_at.into_iter().zip(q).filter(clear).map(|(summary, _)| summary).collect()
 }
 
 /// Every metric over all transitions, over starts from rest if there are reversals too, and by joint.
@@ -183,8 +197,14 @@ pub(super) fn overall<'a>(summaries: &'a [Summary], key: &str) -> Vec<&'a Summar
 
 /// What several say together: the worst of them, where less is known the less good.
 pub(super) fn worst(summaries: &[&Summary]) -> Verdict {
-    const ORDER: [Verdict; 5] =
-        [Verdict::Larger, Verdict::TooFew, Verdict::NotShown, Verdict::Equal, Verdict::Smaller];
+    const ORDER: [Verdict; 6] = [
+        Verdict::Larger,
+        Verdict::Mixed,
+        Verdict::TooFew,
+        Verdict::NotShown,
+        Verdict::Equal,
+        Verdict::Smaller,
+    ];
     let said = |verdict: &&Verdict| summaries.iter().any(|summary| summary.verdict == **verdict);
     ORDER.iter().find(said).copied().unwrap_or(Verdict::TooFew)
 }

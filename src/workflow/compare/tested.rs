@@ -16,6 +16,8 @@ pub enum Verdict {
     Smaller,
     /// Larger after.
     Larger,
+    /// The ranks say the one, the mean the other: most changed one way, a few by much the other way.
+    Mixed,
     /// Chance explains the change.
     NotShown,
     /// No value changed.
@@ -46,20 +48,11 @@ pub(super) fn by_runs([before, after]: &[Vec<f64>; 2], rules: &Rules) -> Option<
     Some(Tested { interval_95, by_runs, p_value: found.p, p_is_exact: false, verdict })
 }
 
-/// Differences in groups that begin within a time of one another, from instants, s, in order.
+/// Differences in groups, each of which begins within a time of the one before it, from instants, s, in order: of a
+/// move of many joints the last may begin later than one event lasts.
 pub(super) fn events(changes: &[(f64, f64)], same_event_s: f64) -> Vec<Vec<f64>> {
-    let mut events: Vec<Vec<f64>> = Vec::new();
-    // One after the other: of a move of many joints the last may begin later than one event lasts.
-    let mut last_s = f64::NEG_INFINITY;
-    for (at_s, change) in changes {
-        if let Some(event) = events.last_mut().filter(|_| at_s - last_s <= same_event_s) {
-            event.push(*change);
-        } else {
-            events.push(vec![*change]);
-        }
-        last_s = *at_s;
-    }
-    events
+    let together = changes.chunk_by(|a, b| b.0 - a.0 <= same_event_s);
+    together.map(|event| event.iter().map(|(_, change)| *change).collect()).collect()
 }
 
 /// By the signed ranks of the mean differences of events.
@@ -75,10 +68,32 @@ pub(super) fn by_events(events: &[Vec<f64>], mean_difference: Option<f64>, rules
         (0, _) if !events.is_empty() => Verdict::Equal,
         _ if too_few => Verdict::TooFew,
         (_, false) => Verdict::NotShown,
-        (_, true) if test.rank_sum < middle => Verdict::Smaller,
-        (_, true) => Verdict::Larger,
+        (_, true) => match (test.rank_sum < middle, mean_difference) {
+            (true, Some(mean)) if mean > 0.0 => Verdict::Mixed,
+            (false, Some(mean)) if mean < 0.0 => Verdict::Mixed,
+            (true, _) => Verdict::Smaller,
+            (false, _) => Verdict::Larger,
+        },
     };
     let both = mean_difference.zip(half_interval(events));
     let interval_95 = both.map(|(mean, half)| [mean - half, mean + half]);
     Tested { interval_95, by_runs: None, p_value: test.p, p_is_exact: test.exact, verdict }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_most_became_smaller_and_one_much_larger_neither_is_said() {
+        let events = |last: f64| -> Vec<Vec<f64>> {
+            (1..=11).map(|k| vec![-0.01 * f64::from(k)]).chain([vec![last]]).collect()
+        };
+        let mean = |events: &[Vec<f64>]| events.iter().map(|event| event[0]).sum::<f64>() / 12.0;
+        let verdict = |last: f64| {
+            let events = events(last);
+            by_events(&events, Some(mean(&events)), &Rules::default()).verdict
+        };
+        assert_eq!([verdict(-0.1), verdict(6.0)], [Verdict::Smaller, Verdict::Mixed]);
+    }
 }

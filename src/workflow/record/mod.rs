@@ -29,6 +29,7 @@ pub use senders::Senders;
 use crate::{
     atomic_file::may_write,
     log::{CsvError, CsvOptions, JsonLines, LogWriter, TableStream, WriteError},
+    units::seconds_since,
 };
 use doubts::LeftOut;
 use later::Later;
@@ -144,6 +145,8 @@ struct Recording<'a> {
     /// Bytes of the part that is being written.
     counter: Arc<AtomicU64>,
     part_from: Progress,
+    /// Stamp of the last row before it, where that is of the same table.
+    part_from_ns: Option<i64>,
     /// Whether the columns of the last header cannot be told: rows are left out until the next one.
     lost: bool,
     left_out: LeftOut,
@@ -169,6 +172,7 @@ impl<'a> Recording<'a> {
             parts: Vec::new(),
             counter: Arc::default(),
             part_from: progress,
+            part_from_ns: None,
             lost: false,
             left_out: LeftOut::default(),
             taken: Vec::new(),
@@ -283,14 +287,12 @@ impl<'a> Recording<'a> {
         }
         self.progress.rows = stream.rows() + self.closed.iter().map(TableStream::rows).sum::<u64>();
         self.progress.bytes = self.counter.load(Ordering::Relaxed);
-        let begun = self.part_from;
         let ends = match self.inputs.part {
             None => false,
             Some(Part::Bytes(most)) => self.progress.bytes >= most,
-            Some(Part::Seconds(most_s)) => {
-                let rate_hz = stream.understood().time.rate_hz.max(f64::MIN_POSITIVE);
-                (self.progress.rows - begun.rows) as f64 >= most_s * rate_hz
-            }
+            Some(Part::Seconds(most_s)) => stream.span_ns().is_some_and(|[first_ns, last_ns]| {
+                seconds_since(self.part_from_ns.unwrap_or(first_ns), last_ns) >= most_s
+            }),
         };
         let is_over = stream.is_over();
         if (ends || is_over)
@@ -298,6 +300,7 @@ impl<'a> Recording<'a> {
         {
             log.finish()?;
             self.part_from = self.progress;
+            self.part_from_ns = stream.span_ns().filter(|_| !is_over).map(|[_, last_ns]| last_ns);
             if is_over {
                 // The header is the first line of those that settle the columns anew.
                 (self.first, self.first_lines) = (text.to_vec(), 1);

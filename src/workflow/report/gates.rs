@@ -97,7 +97,14 @@ impl Gates {
             let all = transitions.or_else(joints).or_else(tools).unwrap_or_default();
             worst(gate, all, self.empty_is_kept)
         };
-        self.gates.iter().map(one).collect()
+        let all: Vec<GateResult> = self.gates.iter().map(one).collect();
+        // Of limits on joints that turn and on those that slide, what an arm has none of breaks none.
+        let judged = |key: &str| all.iter().any(|other| other.gate.key == key && other.joint.is_some());
+        let has = |kind: JointKind| replay.joints.iter().any(|joint| joint.kind == kind);
+        let of_both = self.gates.iter().zip(&all);
+        let of_both =
+            of_both.filter(|(gate, own)| has(gate.kind) || own.joint.is_some() || !judged(own.gate.key));
+        of_both.map(|(_, own)| own.clone()).collect()
     }
 }
 

@@ -24,6 +24,7 @@ mod join_units;
 mod layout;
 #[cfg(unix)]
 mod next_run;
+mod odd_runs;
 mod other_machines;
 mod output;
 #[cfg(unix)]
