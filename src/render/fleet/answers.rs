@@ -143,7 +143,8 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
         section = section.with(trends(drift.trends.iter().take(most)));
     }
     section = section.with_all(more(drift.trends.len(), most));
-    let note = "Each start is compared with the same start of the same plan. q: share of false discoveries if this trend \
+    let note = "Each start is compared with the same start of the same plan. Runs of one day share oil and load: their mean \
+                counts as one run, where a machine ran on five days or more. q: share of false discoveries if this trend \
                 and all surer ones count as found; found: q below 5 %, and three robust deviations from what is \
                 usual where ten joints or more tell that. A step is a level that changes between two runs and stays; it \
                 stands in place of a trend where it explains the levels better. Where a level changed more than once, a day's change \

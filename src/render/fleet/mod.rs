@@ -64,7 +64,7 @@ pub(crate) fn scanned(scanned: &Scanned) -> Document {
         )));
     }
     let into = argument(&scanned.into);
-    let next = if scanned.machines.is_empty() {
+    let next = if scanned.machines.is_empty() && *analysed > 0 {
         let aim = "No log names its machine, and answers are by machine: scan again with --machine-from path:1, which takes the folder of \
                    each log, or as `hydrotrace fleet scan --help` says.";
         section.with(Sentence::advice(aim))

@@ -46,6 +46,19 @@ pub(super) fn without_undated(runs: &mut Vec<Run>, remarks: &mut Remarks) {
     runs.retain(Run::is_dated);
 }
 
+/// Says of which runs day and month may be the other way round.
+pub(super) fn orders(runs: &[Run], doubtful: &BTreeSet<String>, remarks: &mut Remarks) {
+    let mut of_them = runs.iter().filter(|run| doubtful.contains(&run.id)).peekable();
+    let Some(first) = of_them.peek() else { return };
+    let message = format!(
+        "runs in whose dates the day or the month may come first, as {}, which is taken to be of {}: if that is wrong, \
+         `hydrotrace import LOG --time-unit mdy --save-map map.toml` (or dmy) and a scan with --map map.toml set it right",
+        name(first),
+        date(days(first)).unwrap_or_default().get(..10).unwrap_or_default()
+    );
+    remarks.add(Code::DateOrder, of_them.count() as u64, message);
+}
+
 /// Takes the dates of names where those of the stamps cannot be right, and says so; and where they may not be.
 pub(super) fn dates(runs: &mut [Run], remarks: &mut Remarks) {
     let mut doubts: [(u64, String); 2] = Default::default();

@@ -9,9 +9,10 @@ use std::{collections::BTreeSet, path::Path};
 use serde::{Deserialize, Serialize};
 
 use super::{
+    drift::few_days,
     failure::FleetFailure,
     history::{Axis, By, Filter, History, Values},
-    joint_trend::MOST_FALSE,
+    joint_trend::{FEWEST_OF_A_SIDE, MOST_FALSE},
     note::{Intervention, Note, notes},
     run::date,
     sides::{Drift, Sides},
@@ -20,7 +21,7 @@ use super::{
 use crate::{
     document::PROGRAM,
     math::{SIGMA_PER_MAD, difference, false_discovery, mad, median},
-    remark::Remarks,
+    remark::{Code, Remarks},
     units::SECONDS_PER_DAY,
 };
 
@@ -129,12 +130,18 @@ pub fn effect(
         (Window::of(at_us, filter.since_us, &runs_us, noted.iter().copied()), noted)
     };
     let (whole, of_whole) = of_joint(filter.joint.as_deref());
+    // Both sides have days enough, or neither is of days.
+    let enough = |days: &[i64]| {
+        let before = days.iter().filter(|day_us| **day_us < at_us).count();
+        before.min(days.len() - before) >= FEWEST_OF_A_SIDE
+    };
+    let (daily, few) = history.by_day(Some(at_us), enough);
     let own =
-        history.values.iter().filter(|((axis, metric), _)| axis.machine == machine && by.contains(metric));
+        daily.values.iter().filter(|((axis, metric), _)| axis.machine == machine && by.contains(metric));
     let mut effects = Vec::new();
     let mut too_few = 0;
     for ((axis, metric), values) in own {
-        match joint_effect(&history, axis, *metric, values, of_joint(Some(&axis.joint)).0) {
+        match joint_effect(&daily, axis, *metric, values, of_joint(Some(&axis.joint)).0) {
             Some(found) => effects.push(found),
             None => too_few += 1,
         }
@@ -152,6 +159,9 @@ pub fn effect(
     let runs =
         |after: bool| own_runs().filter(|run| whole.holds(run) && whole.is_after(run) == after).count();
     let [between, together] = whole.beside(&of_whole);
+    let mut remarks = history.remarks.clone();
+    let few: Vec<String> = few.into_iter().filter(|few| few == machine).collect();
+    remarks.add(Code::FewDays, few.len() as u64, few_days(&few));
     Ok(Effect {
         format: FORMAT.to_owned(),
         program: PROGRAM.to_owned(),
@@ -165,7 +175,7 @@ pub fn effect(
         false_discovery_rate: MOST_FALSE,
         effects,
         too_few,
-        remarks: history.remarks,
+        remarks,
     })
 }
 

@@ -78,7 +78,7 @@ pub(super) struct History {
     pub(super) directions: BTreeMap<(String, Event), i64>,
     pub(super) remarks: Remarks,
     /// Names of all joints.
-    joints: BTreeSet<String>,
+    pub(super) joints: BTreeSet<String>,
 }
 
 /// Which part of the dataset is asked for.
@@ -142,13 +142,15 @@ impl History {
         let analysed = |row: &Vec<Cell>| Some((row[0].as_text()?.to_owned(), row[11].as_text()?.to_owned()));
         let analyses: BTreeMap<String, String> = runs.iter().filter_map(analysed).collect();
         history.take_runs(runs, &joints);
-        let mut spoilt = BTreeSet::new();
+        let (mut spoilt, mut doubtful) = (BTreeSet::new(), BTreeSet::new());
         for path in found.iter().map(|part| part.path(Name::Remarks)).filter(|path| root.join(path).exists())
         {
             let rows = read(root, &path, Name::Remarks, &REMARK)?;
             let spoils = |row: &&Vec<Cell>| {
                 row[1].as_text().is_some_and(|code| Code::SPOILS_RUNS.iter().any(|c| c.name() == code))
             };
+            let of_order = rows.iter().filter(|row| row[1].as_text() == Some(&Code::DateOrder.name()));
+            doubtful.extend(of_order.filter_map(|row| row[0].as_text().map(str::to_owned)));
             spoilt.extend(rows.iter().filter(spoils).filter_map(|row| row[0].as_text().map(str::to_owned)));
         }
         history.leave_out_spoilt(&spoilt);
@@ -161,6 +163,7 @@ impl History {
             doubts::without_undated(&mut history.runs, &mut history.remarks);
         }
         doubts::dates(&mut history.runs, &mut history.remarks);
+        doubts::orders(&history.runs, &doubtful, &mut history.remarks);
         history
             .runs
             .retain(|run| wanted(run) && filter.since_us.is_none_or(|since_us| run.started_us >= since_us));

@@ -7,6 +7,7 @@
 
 mod arrange;
 mod blocks;
+mod by_day;
 mod common;
 mod compact;
 mod course;

@@ -59,7 +59,7 @@ struct Found {
     logs: BTreeMap<PathBuf, Source>,
     tables: bool,
     /// Tables that were not asked for.
-    left_out: usize,
+    left_out: BTreeSet<PathBuf>,
     /// Folders in folders that this user may not list, as a disk has for its repairs.
     closed: Vec<PathBuf>,
 }
@@ -100,7 +100,7 @@ pub(super) fn sources(texts: &[String]) -> Result<(Vec<Source>, usize, Vec<Strin
         if own.logs.is_empty() && !Path::new(text).exists() {
             empty.push(format!("no log in {text:?}"));
         }
-        found.left_out += own.left_out;
+        found.left_out.extend(own.left_out);
         let closed =
             |path: &PathBuf| format!("{} may not be listed: what lies in it is left out", path.display());
         empty.extend(own.closed.iter().map(closed));
@@ -108,7 +108,7 @@ pub(super) fn sources(texts: &[String]) -> Result<(Vec<Source>, usize, Vec<Strin
             found.logs.entry(path).or_insert(source);
         }
     }
-    let left_out = found.left_out;
+    let left_out = found.left_out.iter().filter(|table| !found.logs.contains_key(*table)).count();
     if found.logs.is_empty() {
         Err(FleetFailure::NoLogs { text: texts.first().cloned().unwrap_or_default() })
     } else {
@@ -226,7 +226,7 @@ fn walk(folder: &Path, wanted: &mut dyn FnMut(&Path) -> bool, found: &mut Found)
             if found.is_log(&name) {
                 put(path, &is, &mut found.logs);
             } else {
-                found.left_out += usize::from(TABLES.iter().any(|ending| ends(&name, ending)));
+                found.left_out.extend(TABLES.iter().any(|ending| ends(&name, ending)).then_some(path));
             }
         }
     }
