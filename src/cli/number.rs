@@ -35,6 +35,7 @@ numbers! {
     speed_deg_s(0.1, 1000.0, "a speed from 0.1 to 1000 deg/s", radians_from_degrees);
     speed_mm_s(1.0, 10_000.0, "a speed from 1 to 10000 mm/s", thousandth);
     millimetres(0.0, f64::MAX, "a non-negative length in millimetres", thousandth);
+    correction_deg(0.0, 57.0, "an angle from 0 to 57 deg", radians_from_degrees);
     correction_mm(0.0, 1000.0, "a length from 0 to 1000 mm", thousandth);
     milliseconds(0.0, f64::MAX, "a non-negative time in milliseconds", thousandth);
     /// A negative one allows some growth.

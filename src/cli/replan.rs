@@ -10,7 +10,7 @@ use std::{
 use super::{
     CliError, Outcome, Run,
     console::{Console, Target, progress, spare_for_log, spare_for_page, write_file},
-    number::{correction_mm, degrees, growth_percent, share},
+    number::{correction_deg, correction_mm, growth_percent, share},
     plan::Free,
     read::SentArgs,
 };
@@ -90,7 +90,7 @@ struct ChangeArgs {
     gain: f64,
 
     /// Largest difference between command and plan [default: 1.25 times the largest error, at least 1.5]
-    #[arg(long, value_name = "DEG", value_parser = degrees, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = correction_deg, allow_negative_numbers = true)]
     max_correction_deg: Option<f64>,
 
     /// The same of joints that slide [default: 1.25 times the largest error, at least 26]

@@ -211,8 +211,9 @@ fn joint_strokes(joint: &JointRoom, excitation: &Excitation) -> Result<Vec<(f64,
     if below < -ROUNDED_RAD || above < -ROUNDED_RAD || below.max(above) < least_rad {
         return Err(no_room(joint, least_rad));
     }
-    // To both sides, if that leaves enough.
-    let room = if below.min(above) >= least_rad { below.min(above) } else { below.max(above) };
+    // To both sides, if that leaves enough and goes no less far than to one.
+    let both = below.min(above);
+    let room = if both >= least_rad && 2.0 * both >= below.max(above) { both } else { below.max(above) };
     let mut states = Vec::new();
     let fastest_rad_s = ramps.iter().map(|ramp| ramp.speed_rad_s).fold(0.0, f64::max);
     for ramp in &ramps {

@@ -52,6 +52,9 @@ const ROUNDS: usize = 4;
 /// Rounds of the fits that leave a part out.
 const FOLD_ROUNDS: usize = 3;
 
+/// What is measured and what is sent correlate by less than this where a sign is wrong.
+const AGAINST: f64 = -0.5;
+
 /// A joint that moves by a smaller share of what it is sent stands.
 const STANDS: f64 = 0.02;
 
@@ -125,7 +128,7 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         Oscillation::of(&left_rad).character == Character::Calm
     };
     knowledge.judge(calm, skill.held_out_r2, skill.unexplained_share(found.scale_rad));
-    let nothing = skill.explains_nothing() || stands(runs);
+    let nothing = skill.explains_nothing() || stands(runs) || goes_against(runs);
     let skill = if nothing { skill.without_model(&held_out) } else { skill };
     let joint = report(named, &problem, &found, &knowledge, least, samples, &skill);
     let joint = rivals.iter().fold(joint, JointFit::with_rival);
@@ -210,6 +213,23 @@ fn stands(runs: &[Run]) -> bool {
         runs.iter().map(|run| own(run).powi(2)).sum()
     };
     squares_rad2(&|_, sample| sample.measured_rad) < STANDS * STANDS * squares_rad2(&Run::sent_rad)
+}
+
+/// Whether the joint goes the other way than it is sent: a sign is wrong, and no lag.
+fn goes_against(runs: &[Run]) -> bool {
+    let mut sums = [0.0; 3];
+    for run in runs {
+        let count = run.samples.len().max(1) as f64;
+        let both = || run.samples.iter().map(|sample| [run.sent_rad(sample), sample.measured_rad]);
+        let means = [0, 1].map(|side| both().map(|pair| pair[side]).sum::<f64>() / count);
+        for pair in both() {
+            let [sent, came] = [pair[0] - means[0], pair[1] - means[1]];
+            for (sum, product) in sums.iter_mut().zip([sent * came, sent * sent, came * came]) {
+                *sum += product;
+            }
+        }
+    }
+    sums[0] < AGAINST * (sums[1] * sums[2]).sqrt()
 }
 
 /// Limits that were asked for far enough to show; looking for others costs time.

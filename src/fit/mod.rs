@@ -60,6 +60,7 @@ pub use outcome::{
 pub use predict::predict;
 pub use run::{Observation, SPARSEST_S};
 pub use shared::{SharedJoint, SharedLimit};
+pub use skill::{MOST_MARGIN, STARTS as MARGIN_STARTS};
 pub use start_error::{PredictedStart, StartErrorPredictor};
 
 use crate::{series::JointKind, threads, units::DEGREE_RAD};
@@ -142,12 +143,11 @@ pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), Fit
             moves
                 .then(|| {
                     let (mut joint, ratios, held_out) = joint::joint((name, kind), &runs);
-                    joint.valve_dead_band = logs.iter().find_map(|log| {
-                        valve::dead_band(
-                            log.valve.iter().find(|s| s.name() == name)?,
-                            log.measured.track(name)?,
-                        )
+                    let signals = logs.iter().filter_map(|log| {
+                        let valve = log.valve.iter().find(|signal| signal.name() == name)?;
+                        Some((valve, log.measured.track(name)?))
                     });
+                    joint.valve_dead_band = valve::dead_band(&signals.collect::<Vec<_>>());
                     (joint, ratios, held_out)
                 })
                 .ok_or(left_out)

@@ -219,8 +219,8 @@ mod limits {
     }
 
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<[Option<f64>; 2], D::Error> {
-        // JSON writes infinity as null.
+        // JSON writes infinity as null. What is no number is told by the check.
         let limits = <[Option<f64>; 2]>::deserialize(from)?;
-        Ok(limits.map(|limit| limit.filter(|limit| limit.is_finite())))
+        Ok(limits.map(|limit| limit.filter(|limit| *limit != f64::INFINITY)))
     }
 }

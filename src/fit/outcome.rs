@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Estimated, FitError, Model, SharedLimit};
+use super::{Estimated, FitError, Model, SharedLimit, skill::MOST_MARGIN};
 use crate::series::JointKind;
 
 /// Held-out skill below which no command should be made from a model.
@@ -143,8 +143,13 @@ impl Fit {
     ///
     /// [`FitError::Value`].
     pub fn check(&self) -> Result<(), FitError> {
+        let (found, least, most) = (self.peak_margin, 1.0, MOST_MARGIN);
+        if !(least..=most).contains(&found) {
+            return Err(FitError::Setting { key: "peak_margin", found, least, most });
+        }
         self.joints.iter().try_for_each(|joint| {
             joint.quantities().iter().try_for_each(|(key, found)| found.check(&joint.name, key))?;
+            joint.check_skill()?;
             joint.model.check(&joint.name)
         })
     }
@@ -156,6 +161,18 @@ const NEAR: f64 = 0.8;
 const OWN: f64 = 0.9;
 
 impl JointFit {
+    /// Holds what is said of its predictions to what that can be.
+    fn check_skill(&self) -> Result<(), FitError> {
+        let value =
+            |key, found, least, most| FitError::Value { joint: self.name.clone(), key, found, least, most };
+        if !(f64::MIN..=1.0).contains(&self.held_out_r2) {
+            return Err(value("held_out_r2", self.held_out_r2, f64::NEG_INFINITY, 1.0));
+        }
+        let unexplained_rad = self.unexplained_peak_rad.into_iter().flatten();
+        let bad = unexplained_rad.into_iter().find(|found| !(0.0..=f64::MAX).contains(found));
+        bad.map_or(Ok(()), |found| Err(value("unexplained_peak_rad", found, 0.0, f64::INFINITY)))
+    }
+
     /// Every number that is told of a joint, by its name with its unit.
     pub const fn quantities(&self) -> [(&'static str, Estimated); 12] {
         [

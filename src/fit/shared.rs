@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::run::Observation;
 use crate::{
-    math::quantile,
+    math::{jackknife, quantile},
     series::{JointKind, Series, Track},
 };
 
@@ -232,14 +232,11 @@ fn told(
             ones(&left, weights.len())
         })
         .collect();
-    let n = without.len() as f64;
     let interval = |joint: usize| {
-        let alone = |weights: &Vec<f64>| 1.0 / weights[joint];
-        let mean = without.iter().map(alone).sum::<f64>() / n;
-        let square = without.iter().map(|weights| (alone(weights) - mean).powi(2)).sum::<f64>();
-        let half = 1.96 * (square * (n - 1.0) / n).sqrt();
+        let alone: Vec<f64> = without.iter().map(|weights| 1.0 / weights[joint]).collect();
+        let half = jackknife(&alone).filter(|half| alone.len() >= 4 && half.is_finite())?;
         let value = 1.0 / weights[joint];
-        (without.len() >= 4 && half.is_finite()).then_some([(value - half).max(0.0), value + half])
+        Some([(value - half).max(0.0), value + half])
     };
     let takes = |joint: &usize| near.speed_rad_s.iter().any(|speeds| weights[*joint] * speeds[*joint] > AT);
     (0..joints.len())

@@ -11,6 +11,9 @@ use crate::math::quantile;
 /// Margin where there are too few starts to measure it.
 const MARGIN: f64 = 1.2;
 
+/// No margin is larger.
+pub const MOST_MARGIN: f64 = 3.0;
+
 /// Prediction that is worse than this has nothing to do with the joint, and is not told apart: such as a model of one that
 /// is stuck.
 const WORST_R2: f64 = -1.0;
@@ -22,7 +25,7 @@ const PEAK_BY_SCALE: f64 = 5.0;
 pub(super) const FEWEST: usize = 3;
 
 /// Fewest starts that make a margin.
-const STARTS: usize = 10;
+pub const STARTS: usize = 10;
 
 /// Errors of prediction on held-out data of one joint.
 #[derive(Debug, Clone, PartialEq)]
@@ -163,5 +166,5 @@ pub(super) fn unexplained_by(
 
 /// Factor on predicted peaks: 90 % of the measured ones stay below.
 pub(super) fn margin(peak_ratios: Vec<f64>) -> f64 {
-    if peak_ratios.len() < STARTS { MARGIN } else { quantile(peak_ratios, 0.9).clamp(1.0, 3.0) }
+    if peak_ratios.len() < STARTS { MARGIN } else { quantile(peak_ratios, 0.9).clamp(1.0, MOST_MARGIN) }
 }

@@ -2,7 +2,7 @@
 
 use super::Estimated;
 use crate::{
-    math::median,
+    math::{jackknife, median},
     series::{LocalFit, Signal, Track, local_quadratic},
     units::DEGREE_RAD,
 };
@@ -28,9 +28,11 @@ const SAMPLES: usize = 60;
 /// Speeds and earlier signals of a slow motion.
 type Motion = Vec<(f64, f64)>;
 
-/// Slow motion after a longer pause is another motion, s; so many at least tell how far they differ.
+/// Slow motion after a longer pause is another motion, s.
 const APART_S: f64 = 0.5;
-const FEWEST: usize = 3;
+
+/// Half a 95 % interval by its standard deviation.
+const NORMAL: f64 = 1.96;
 
 /// A number that is known no better has no interval: deviation of its logarithm.
 const TOO_VAGUE: f64 = 2.0;
@@ -43,38 +45,43 @@ const FAR: f64 = 2.0;
 const DISCREPANCY: f64 = 0.12;
 
 /// Share of the full signal at which a joint begins to move, for growing and for shrinking angles:
-/// where the line through slow speeds against earlier signals meets no speed.
+/// where the line through slow speeds against earlier signals of all logs meets no speed.
 ///
-/// `None` where a direction has too little slow motion.
-pub(super) fn dead_band(valve: &Signal, measured: &Track) -> Option<[Estimated; 2]> {
-    let (t_s, segments) = (measured.t_s(), measured.segments());
-    let fits = local_quadratic(t_s, measured.position(), segments, WINDOW_S, 7);
+/// A direction that has too little slow motion has no value; `None` where both have none.
+pub(super) fn dead_band(logs: &[(&Signal, &Track)]) -> Option<[Estimated; 2]> {
+    let fits: Vec<Vec<LocalFit>> = logs
+        .iter()
+        .map(|(_, track)| local_quadratic(track.t_s(), track.position(), track.segments(), WINDOW_S, 7))
+        .collect();
     let one = |way: f64| -> Option<Estimated> {
         let slow = |fit: &LocalFit| {
             let speed = way * fit.velocity;
             speed > SLOW_RAD_S[0] && speed < SLOW_RAD_S[1] && fit.acceleration.abs() < EVEN_RAD_S2
         };
-        let moving: Vec<(f64, f64)> = t_s
-            .iter()
-            .zip(&fits)
-            .filter(|(_, fit)| slow(fit))
-            .map(|(&t_s, fit)| (t_s, way * fit.velocity))
-            .collect();
-        let motions: Vec<&[(f64, f64)]> = moving.chunk_by(|a, b| b.0 - a.0 < APART_S).collect();
+        // Instants and speeds of each slow motion, with the signal of its log.
+        let mut motions: Vec<(&Signal, Motion)> = Vec::new();
+        for ((valve, measured), fits) in logs.iter().zip(&fits) {
+            let moving = measured.t_s().iter().zip(fits).filter(|(_, fit)| slow(fit));
+            let moving: Vec<(f64, f64)> = moving.map(|(&t_s, fit)| (t_s, way * fit.velocity)).collect();
+            let apart = moving.chunk_by(|a, b| b.0 - a.0 < APART_S);
+            motions.extend(apart.map(|motion| (*valve, motion.to_vec())));
+        }
         let mut best: Option<(f64, f64, Vec<Motion>)> = None;
         for step in 0..DELAYS {
             let delay_s = f64::from(step) * DELAY_STEP_S;
-            let signal = |(t_s, speed): &(f64, f64)| Some((*speed, way * valve.at(t_s - delay_s)?));
-            let signals: Vec<Motion> =
-                motions.iter().map(|motion| motion.iter().filter_map(signal).collect()).collect();
+            let signals = |(valve, motion): &(&Signal, Motion)| -> Motion {
+                let signal = |(t_s, speed): &(f64, f64)| Some((*speed, way * valve.at(t_s - delay_s)?));
+                motion.iter().filter_map(signal).collect()
+            };
+            let signals: Vec<Motion> = motions.iter().map(signals).collect();
             let Some((start, spread)) = line(&signals.concat(), SAMPLES) else { continue };
             if best.as_ref().is_none_or(|(_, least, _)| spread < *least) {
                 best = Some((start, spread, signals));
             }
         }
         let (start, _, signals) = best.filter(|(start, ..)| *start > 0.0)?;
-        let deviation = DISCREPANCY.hypot(jackknife(&signals) / start);
-        let reach = (1.96 * deviation).exp();
+        let deviation = DISCREPANCY.hypot(scatter(&signals) / start);
+        let reach = (NORMAL * deviation).exp();
         Some(Estimated {
             value: Some(start),
             interval: (deviation < TOO_VAGUE).then_some([start / reach, start * reach]),
@@ -82,20 +89,18 @@ pub(super) fn dead_band(valve: &Signal, measured: &Track) -> Option<[Estimated; 
             ..Estimated::default()
         })
     };
-    Some([one(1.0)?, one(-1.0)?])
+    let both = [one(1.0), one(-1.0)];
+    both.iter().any(Option::is_some).then(|| both.map(Option::unwrap_or_default))
 }
 
 /// Standard deviation of the line's start by leaving out each motion, whose samples tell of one another; infinite of too few.
-fn jackknife(motions: &[Motion]) -> f64 {
+fn scatter(motions: &[Motion]) -> f64 {
     let without = |out: usize| {
         let rest = motions.iter().enumerate().filter(|(k, _)| *k != out);
-        line(&rest.flat_map(|(_, motion)| motion.iter().copied()).collect::<Vec<_>>(), SAMPLES / 3)
+        Some(line(&rest.flat_map(|(_, motion)| motion.iter().copied()).collect::<Vec<_>>(), SAMPLES / 3)?.0)
     };
-    let starts: Option<Vec<f64>> = (0..motions.len()).map(|out| Some(without(out)?.0)).collect();
-    let Some(starts) = starts.filter(|starts| starts.len() >= FEWEST) else { return f64::INFINITY };
-    let count = starts.len() as f64;
-    let mean = starts.iter().sum::<f64>() / count;
-    ((count - 1.0) / count * starts.iter().map(|start| (start - mean).powi(2)).sum::<f64>()).sqrt()
+    let starts: Option<Vec<f64>> = (0..motions.len()).map(without).collect();
+    starts.and_then(|starts| jackknife(&starts)).map_or(f64::INFINITY, |half| half / NORMAL)
 }
 
 /// Signal at no speed on the line through (speed, signal), and the median distance from the line, to which what lies far off counts
@@ -143,7 +148,7 @@ mod tests {
             .collect();
         let valve = Signal::new("a", Quantity::Share, t_s.clone(), signal, &[]).unwrap();
         let measured = Track::new("a", t_s, position, &[]).unwrap();
-        let found = dead_band(&valve, &measured).unwrap().map(|side| side.value.unwrap());
+        let found = dead_band(&[(&valve, &measured)]).unwrap().map(|side| side.value.unwrap());
         assert!((found[0] - 0.1).abs() < 0.004 && (found[1] - 0.06).abs() < 0.004, "{found:?}");
     }
 }

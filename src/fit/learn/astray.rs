@@ -8,13 +8,21 @@ use super::{
 };
 use crate::{
     math::{deviation, range, rms},
-    series::Series,
+    series::{JointKind, Series},
     units::DEGREE_RAD,
 };
 
 /// A joint whose error is more than this share of its motion does not follow its plan: what it does is no error to be
-/// corrected. Smaller errors than that of the lesser cap are.
+/// corrected.
 const FOLLOWS: f64 = 0.5;
+
+/// Smaller errors are corrected, however little the plan asks for, rad or m.
+const fn detail(kind: JointKind) -> f64 {
+    match kind {
+        JointKind::Turns => 0.3 * DEGREE_RAD,
+        JointKind::Slides => 0.003,
+    }
+}
 
 /// Largest correction of a plan that is off by little, rad.
 pub(super) const CAP_RAD: f64 = 1.5 * DEGREE_RAD;
@@ -36,7 +44,12 @@ pub fn half_astray(fit: &Fit, plan: &Series, run: Trial) -> bool {
         let Some(answer) = Answer::of(0, &run, track.name(), from_s, &planned) else { continue };
         if highest - lowest > TRAVELS_RAD {
             moving += 1;
-            astray += usize::from(is_astray(&planned, &answer, fit.joint(track.name()), &mut workspace));
+            astray += usize::from(is_astray(
+                (track.kind(), &planned),
+                &answer,
+                fit.joint(track.name()),
+                &mut workspace,
+            ));
         }
     }
     astray > 0 && 2 * astray >= moving
@@ -45,7 +58,7 @@ pub fn half_astray(fit: &Fit, plan: &Series, run: Trial) -> bool {
 /// Whether a run has little to do with the plan: wrong sign, zero, unit or name, or a joint that is stuck. One that moves,
 /// and is as far off as its model says, is no such joint but a slow one.
 pub(super) fn is_astray(
-    planned: &[(f64, f64)],
+    (kind, planned): (JointKind, &[(f64, f64)]),
     run: &Answer,
     fit: Option<&JointFit>,
     workspace: &mut Workspace,
@@ -61,5 +74,5 @@ pub(super) fn is_astray(
         let moves = deviation(&run.measured_rad) > FOLLOWS * asked_rad;
         fit.trusted() && moves && left_rad < EXPLAINED * error_rad
     };
-    error_rad > CAP_RAD.max(FOLLOWS * asked_rad) && !fit.is_some_and(slow)
+    error_rad > detail(kind).max(FOLLOWS * asked_rad) && !fit.is_some_and(slow)
 }

@@ -91,7 +91,8 @@ impl<'a> Joint<'a> {
         }
         let sent = answers.iter().map(|run| run.correction_rad(&planned)).collect();
         let mut workspace = Workspace::default();
-        let astray = answers.last().is_some_and(|run| is_astray(&planned, run, fit, &mut workspace));
+        let astray =
+            answers.last().is_some_and(|run| is_astray((track.kind(), &planned), run, fit, &mut workspace));
         let known = fit.filter(|_| !astray);
         let chance = known.and_then(|fit| unlearnt(&mut answers, &planned, &fit.model, &mut workspace));
         // What a joint does that follows another plan, or none, is no oscillation of its loop.
@@ -269,7 +270,7 @@ impl<'a> Joint<'a> {
             return (Step::First { model_weight }, scaled(wanted, gain));
         }
         let follow = settings.follow && manner.character == Character::Calm;
-        let (from, trust) = if follow { (answers.len() - 1, 1.0) } else { trusted(rms_rad) };
+        let (from, trust) = if follow { (answers.len() - 1, 1.0) } else { trusted(rms_rad, sent) };
         let (from, trust) = match unspoilt(from, sent, &whole) {
             // One correction may be mended by the next; twice is enough.
             (_, 0 | 1) => (from, trust),
@@ -325,11 +326,18 @@ fn grown(now_rad: f64, best_rad: f64) -> bool {
     now_rad > GROWN * best_rad || (now_rad > GROWN_BY.0 * best_rad && now_rad - best_rad > GROWN_BY.1)
 }
 
-/// The run to go on from, and what is left of trust in a step: half for each run that grew the error.
-fn trusted(rms_rad: &[f64]) -> (usize, f64) {
-    let (mut best, mut trust) = (0, 1.0);
+/// The run to go on from, and what is left of trust in a step: half for each run that grew the error by another command, and twice for
+/// each that did not.
+fn trusted(rms_rad: &[f64], sent: &[Vec<f64>]) -> (usize, f64) {
+    let (mut best, mut trust) = (0, 1.0_f64);
+    let again = |k: usize, best: usize| {
+        let apart = sent[k].iter().zip(&sent[best]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        apart < (AGAIN * largest(&sent[best])).max(AGAIN * TOLD_RAD)
+    };
     for (k, now) in rms_rad.iter().enumerate().skip(1) {
-        if grown(*now, rms_rad[best]) {
+        if !grown(*now, rms_rad[best]) {
+            trust = (2.0 * trust).min(1.0);
+        } else if !again(k, best) {
             trust *= 0.5;
         }
         if *now < rms_rad[best] {
@@ -337,8 +345,8 @@ fn trusted(rms_rad: &[f64]) -> (usize, f64) {
         }
     }
     let last = rms_rad.len().saturating_sub(1);
-    let from = if rms_rad.get(last).is_some_and(|now| grown(*now, rms_rad[best])) { best } else { last };
-    (from, trust)
+    let worse = rms_rad.get(last).is_some_and(|now| grown(*now, rms_rad[best])) && !again(last, best);
+    (if worse { best } else { last }, trust)
 }
 
 /// What is left of a correction that fades out towards the ends of its stretches, 0 to 1 by step.
@@ -353,4 +361,21 @@ fn fade(steps: usize, free: &[Range<usize>]) -> Vec<f64> {
         }
     }
     weight
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn trust_comes_back_and_the_same_sent_again_takes_none() {
+        let sent = |of: &[f64]| of.iter().map(|deg| vec![deg * DEGREE_RAD; 4]).collect::<Vec<_>>();
+        let rad = |of: &[f64]| of.iter().map(|deg| deg * DEGREE_RAD).collect::<Vec<_>>();
+        // The same command again and again, on a machine that differs from run to run.
+        assert_eq!(trusted(&rad(&[1.0, 0.5, 0.6, 0.5, 0.6]), &sent(&[0.0, 0.5, 0.5, 0.5, 0.5])), (4, 1.0));
+        // More of it grew the error twice, and then not.
+        let grew = [1.0, 0.5, 0.7, 0.8];
+        assert_eq!(trusted(&rad(&grew), &sent(&[0.0, 0.5, 1.0, 1.4])), (1, 0.25));
+        assert_eq!(trusted(&rad(&[1.0, 0.5, 0.7, 0.4]), &sent(&[0.0, 0.5, 1.0, 0.6])), (3, 1.0));
+    }
 }

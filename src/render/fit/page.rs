@@ -2,12 +2,12 @@
 
 use maud::{Markup, html};
 
-use super::tables::{document, left_out_line, machine};
+use super::tables::{document, left_out_line, machine, margin};
 use crate::{
     fit::{Fit, HeldOut, JointFit, LEAST_SHARP_SKILL, LEAST_SMOOTH_SKILL},
     render::{
         kit::{
-            self, Id, Section, clean, counted,
+            self, Id, Section, clean,
             page::{
                 Chapter, Plots, blocks, card,
                 chart::{Chart, Panel, Role, Series, Size, at, rounded, span, times},
@@ -29,7 +29,7 @@ pub(in crate::render) fn fitted(fit: &Fit) -> Markup {
     html! {
         p class="hint" { "The closed loop of each joint as identified from logs, with 95 % intervals." }
         @for section in machine(fit) { (headed(&section)) }
-        p { (format!("90 % of held-out peaks stay below {:.2} times the predicted ones.", fit.peak_margin)) }
+        p { (margin(fit)) }
         @if let Some(line) = left_out_line(fit) { p { (clean(&line)) } }
     }
 }
@@ -73,7 +73,7 @@ fn summary(fitted: &Fitted, next: Option<&Section>) -> Markup {
     };
     let worst = joints.iter().min_by(|a, b| a.held_out_r2.total_cmp(&b.held_out_r2));
     let starts = html! {
-        p { "In 90 % of " (counted(fitted.fit.margin_starts, "start")) " that were held out, the measured peak stays below that." }
+        p { (margin(&fitted.fit)) }
     };
     html! {
         div class="cards" {

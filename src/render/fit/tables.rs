@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use super::Shown;
 use crate::{
     fit::{
-        Estimated, Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LEAST_SMOOTH_SKILL, LeftOut,
-        MOST_UNEXPLAINED, SharedJoint, SharedLimit,
+        Estimated, Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LEAST_SMOOTH_SKILL, LeftOut, MARGIN_STARTS,
+        MOST_MARGIN, MOST_UNEXPLAINED, SharedJoint, SharedLimit,
     },
     render::{
         kit::{Column, Document, Id, Section, Sentence, Table, counted, some_of},
@@ -157,22 +157,32 @@ pub(in crate::render) fn shared(limit: &SharedLimit) -> String {
     )
 }
 
+/// How far peaks may be above what is predicted.
+pub(super) fn margin(fit: &Fit) -> String {
+    let (starts, times) = (counted(fit.margin_starts, "held-out start"), fit.peak_margin);
+    if fit.margin_starts < MARGIN_STARTS {
+        return format!(
+            "Measured peaks are taken to stay below {times:.2} times the predicted ones: {starts} tell nothing of it."
+        );
+    }
+    let most = if times < MOST_MARGIN { "" } else { ", or above it: no more is reckoned with" };
+    format!("In 90 % of {starts} the measured peak stays below {times:.2} times the predicted one{most}.")
+}
+
 /// What the numbers are good for, and what would tell the rest.
 fn trust(fitted: &Fitted) -> Vec<Sentence> {
     let fit = &fitted.fit;
     let good = fit.joints.iter().filter(|joint| joint.trusted()).count();
     let doubtful = fit.joints.iter().filter(|joint| joint.trusted() && !joint.model_holds).count();
     let mut lines = vec![format!(
-        "Commands can be made of the model alone for {}{}: a held-out R2 of {LEAST_SKILL} is enough. In 90 % of {} held-out starts the measured peak \
-         stays below {:.2} times the predicted one.",
+        "Commands can be made of the model alone for {}{}: a held-out R2 of {LEAST_SKILL} is enough. {}",
         some_of(good, fit.joints.len(), "joint"),
         if doubtful == 0 {
             String::new()
         } else {
             format!(", with care of {doubtful} whose model does not hold")
         },
-        fit.margin_starts,
-        fit.peak_margin
+        margin(fit)
     )];
     lines.extend(fit.shared.as_ref().map(shared));
     let all = || LOOP.iter().chain(&LIMITS);

@@ -171,6 +171,12 @@ fn words(level: Level, finding: &Finding, units: Units) -> String {
                 Level::Stop => ": find out what changed on the machine",
             }
         ),
+        Finding::Outlook { last_mean_peak_rad: Some(last_rad), expected } if units.mixed() => format!(
+            "Mean peak error of starts: {:.0} % of the last is expected, in nine runs of ten less than {:.0} %, over joints that turn and joints \
+             that slide; each kind stands under EXPECTED.",
+            100.0 * expected.mean_peak_rad / last_rad,
+            100.0 * expected.mean_peak_margin_rad / last_rad
+        ),
         Finding::Outlook { last_mean_peak_rad, expected } => format!(
             "Mean peak error of starts: {} last, {} expected, in nine runs of ten below {}.",
             optional(*last_mean_peak_rad, shown),

@@ -264,7 +264,7 @@ fn of_step(
         margins = nearest(found);
     } else {
         for (j, of) in shares.iter_mut().enumerate() {
-            *of = gentle(plan.tracks[j].kind(), &planned[j], &learnt.joints[j]);
+            *of = gentle_share(plan.tracks[j].kind(), &planned[j], &learnt.joints[j]);
         }
     }
     let share_of = |name: &str| index(name).map_or(1.0, |j| shares[j].0);
@@ -285,16 +285,20 @@ fn of_step(
 /// Where no limit of a joint is known, a correction accelerates it to no more than this times what its plan does, or to this,
 /// rad/s² and m/s²: slow plans start over a dead band with more than theirs.
 pub(super) const SHARPEST: f64 = 4.0;
-const GENTLE: (f64, f64) = (30.0 * DEGREE_RAD, 0.3);
+pub(super) const fn gentle(kind: JointKind) -> f64 {
+    match kind {
+        JointKind::Turns => 30.0 * DEGREE_RAD,
+        JointKind::Slides => 0.3,
+    }
+}
 
 /// The share of a correction that keeps to that; what was sent before came without harm.
-fn gentle(kind: JointKind, planned: &[[f64; 4]], made: &JointStep) -> (f64, Option<Limit>) {
+fn gentle_share(kind: JointKind, planned: &[[f64; 4]], made: &JointStep) -> (f64, Option<Limit>) {
     let peak = |share: f64| {
         let both = planned.iter().zip(&made.correction);
         both.fold(0.0_f64, |most, (state, made)| most.max((state[2] + share * made[2]).abs()))
     };
-    let gentle = if kind == JointKind::Slides { GENTLE.1 } else { GENTLE.0 };
-    let most = (SHARPEST * peak(0.0)).max(gentle);
+    let most = (SHARPEST * peak(0.0)).max(gentle(kind));
     if matches!(made.step, Step::Kept { .. }) || peak(1.0) <= most {
         return (1.0, None);
     }

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{ReplanFailure, peaks::Peaks};
+use super::{ReplanFailure, peaks};
 use crate::{
     fit::{AFTER_S, Trial},
     log::Recording,
     math::quantile,
-    replay::{Rules, replay},
+    replay::Rules,
     series::{JointKind, Series, Track, bridged, moves_beside_s, moving_s},
     units::DEGREE_RAD,
     workflow::{
@@ -108,7 +108,7 @@ impl History {
         let rest_s = moving_s(plan).map_or(0.0, |[_, moving_to_s]| end_s - moving_to_s);
         let mut after_s = AFTER_S;
         let mut held: Vec<Held> = Vec::new();
-        let mut peaks: Vec<Peaks> = Vec::new();
+        let mut of_runs = Vec::new();
         for (place, (log, recording)) in names.iter().zip(recordings).enumerate() {
             let Some([from_s, _]) = moving_s(&recording.planned) else { continue };
             let Some(starts_s) = found_at_s(plan, &*bridged(&recording.planned)?, from_s - PLAN_LEAD_S)?
@@ -160,7 +160,7 @@ impl History {
                 after_s: (rest_s + rests_s.min(seen_s)).max(0.0),
                 promised: Carried::of(recording).promise(),
             });
-            peaks.push(Peaks::of(&replay(&recording.pairs(), rules)));
+            of_runs.push(peaks::Peaks::of(&peaks::of_plan(recording, [starts_s, starts_s + end_s], rules)));
             history.corrections_rad.push(farthest(&sent, plan));
             history.series.push((sent, measured));
             history.places.push(place);
@@ -169,8 +169,8 @@ impl History {
             others.iter().try_for_each(|other| newest.check(other))?;
         }
         for (k, run) in history.runs.iter_mut().enumerate() {
-            let others = peaks.iter().enumerate().filter(|(other, _)| *other != k);
-            run.mean_peak_rad = peaks[k].usual_mean(&others.map(|(_, peaks)| peaks).collect::<Vec<_>>());
+            let others = of_runs.iter().enumerate().filter(|(other, _)| *other != k);
+            run.mean_peak_rad = of_runs[k].usual_mean(&others.map(|(_, peaks)| peaks).collect::<Vec<_>>());
         }
         // Only what all logs have can be compared.
         for (run, (_, measured)) in history.runs.iter_mut().zip(&mut history.series) {

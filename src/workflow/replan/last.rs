@@ -37,6 +37,8 @@ pub(super) struct Last {
     pub(super) starts_s: Option<f64>,
     /// From the first to the last motion, s.
     pub(super) duration_s: f64,
+    /// The same, as instants of the log.
+    pub(super) span_s: [f64; 2],
     /// The task, if it is known.
     pub(super) request: Option<PlanRequest>,
     /// Arrivals at its key points, s, if they are known and of this task.
@@ -107,6 +109,7 @@ impl Last {
             elsewhere,
             starts_s,
             duration_s: to_s - from_s,
+            span_s: [from_s, to_s],
             request,
             times_s,
             via: via.unwrap_or_default(),

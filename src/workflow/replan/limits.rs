@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     fit::{Estimated, Fit},
     plan::Setup,
-    series::JointKind,
+    series::{JointKind, Series, Track},
     spline::{Motion, Quantity},
     task::Task,
 };
@@ -105,6 +105,39 @@ fn tightest(own: f64, fitted: Option<[Estimated; 2]>, asked: Option<f64>) -> (f6
     if found < own { (found, origin) } else { (own, Origin::Task) }
 }
 
+/// A new plan is beyond what was shown from this share of it on.
+const BEYOND: f64 = 1.25;
+
+/// Joints that a new plan moves one way faster than runs have shown them to go that way, where no limit is known; that of the other way
+/// tells nothing of it.
+pub(super) fn beyond_shown(fit: &Fit, [last, plan]: [&Series; 2]) -> Vec<String> {
+    let of = |track: &Track| {
+        let (joint, before) = (fit.joint(track.name())?, last.track(track.name())?);
+        beyond([joint.speed_limit_growing_rad_s, joint.speed_limit_shrinking_rad_s], [before, track])
+    };
+    plan.tracks.iter().filter_map(of).collect()
+}
+
+fn beyond([growing, shrinking]: [Estimated; 2], [last, plan]: [&Track; 2]) -> Option<String> {
+    let fastest = |track: &Track, way: f64| {
+        let steps = track.t_s().windows(2).zip(track.position().windows(2));
+        steps.map(|(t, q)| way * (q[1] - q[0]) / (t[1] - t[0])).fold(0.0, f64::max)
+    };
+    let (name, kind) = (plan.name(), plan.kind());
+    [(1.0, growing), (-1.0, shrinking)].into_iter().find_map(|(way, limit)| {
+        let shown = limit.lower_bound.filter(|_| !limit.identified)?.max(fastest(last, way));
+        let asked = fastest(plan, way);
+        (asked > BEYOND * shown).then(|| {
+            format!(
+                "the new plan moves {name} one way at up to {}/s, and the runs show {}/s that way: whether it makes more is not known, and what is \
+                 promised does not hold where it does not",
+                kind.says(asked),
+                kind.says(shown)
+            )
+        })
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -129,5 +162,20 @@ mod tests {
         assert_eq!(tightest(1.0, Some([bound(0.2), bound(0.3)]), Some(0.25)), (0.3, Origin::Shown));
         assert_eq!(tightest(0.1, Some([bound(0.2), bound(0.3)]), None), (0.1, Origin::Task));
         assert_eq!(tightest(0.1, None, Some(0.05)), (0.1, Origin::Task));
+    }
+
+    #[test]
+    fn a_plan_that_is_faster_one_way_than_was_shown_is_told_though_the_other_way_was_as_fast() {
+        let moves = |up: f64, down: f64| {
+            Track::sampled("a", 1000, |t: f64| up * t.min(5.0) - down * (t - 5.0).max(0.0))
+        };
+        let last = moves(0.1, 0.4);
+        let told = |plan: Track| beyond([bound(0.1), bound(0.4)], [&last, &plan]);
+        assert_eq!(told(moves(0.11, 0.4)), None);
+        let one = told(moves(0.3, 0.4)).unwrap();
+        assert!(
+            one.contains("moves a one way at up to 17.19 deg/s") && one.contains("show 5.73 deg/s"),
+            "{one}"
+        );
     }
 }

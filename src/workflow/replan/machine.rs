@@ -10,6 +10,8 @@ use crate::{
     fit::{Estimated, Fit, JointFit, Observation},
     log::Recording,
     remark::{Code, Remarks},
+    series::JointKind,
+    units::DEGREE_RAD,
 };
 
 /// What runs that a model was fitted to, among others, leave unexplained is less than what the next one will.
@@ -17,6 +19,9 @@ const SEEN: f64 = 1.25;
 
 /// Runs that leave so many times as much as what was held out are none of those that a model was fitted to.
 const OTHER: f64 = 3.0;
+
+/// What a model leaves of a peak is much from here on, rad and m.
+const MUCH: (f64, f64) = (0.5 * DEGREE_RAD, 0.005);
 
 /// The machine: fitted, or from a file; with the names of the logs behind it.
 pub(super) fn machine(
@@ -42,13 +47,32 @@ pub(super) fn machine(
         };
         let known: Vec<JointFit> = file.fit.joints.clone();
         let fit = file.fit.held_against(&seen, left);
-        for message in known.iter().zip(&fit.joints).flat_map(|(known, held)| disproved(known, held, path)) {
+        let both = || known.iter().zip(&fit.joints);
+        let limits = both().flat_map(|(known, held)| disproved(known, held, path));
+        for message in limits.chain(both().filter_map(|(known, held)| of_another(known, held, path))) {
             doubts.add(Code::PoorFit, 1, message);
         }
         return Ok((fit, file.logs, doubts));
     }
     let fitted = fit::of(logs, observed).map_err(fit::FitFailure::from)?;
     Ok((fitted.fit, fitted.runs.into_iter().map(|run| run.log).collect(), fitted.remarks))
+}
+
+/// A joint that runs show to be another than the one, or in another condition, that its model in a file is of.
+fn of_another(known: &JointFit, held: &JointFit, file: &Path) -> Option<String> {
+    let [was, is] = [known, held].map(|joint| joint.unexplained_peak_rad);
+    let (was_rad, is_rad) = (was?[0], is?[0]);
+    let much_rad = if known.kind == JointKind::Slides { MUCH.1 } else { MUCH.0 };
+    (known.trusted() && is_rad > much_rad && is_rad > OTHER * was_rad).then(|| {
+        format!(
+            "the model of {} in {} leaves {} of the peaks in these runs, and {} in those that it was fitted to: it is of another machine, or of \
+             another condition; without --limits the runs themselves are fitted",
+            known.name,
+            file.display(),
+            known.kind.says(is_rad),
+            known.kind.says(was_rad)
+        )
+    })
 }
 
 /// The speed limits of a joint, from a file, that it was beyond in the runs that it was held against.

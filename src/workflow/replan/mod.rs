@@ -165,6 +165,11 @@ pub fn run(
     if chosen.new.is_none() && chosen.astray() {
         return Err(ReplanFailure::Astray { path: path.clone() });
     }
+    if chosen.new.is_some() {
+        for message in limits::beyond_shown(&fit, [&last.plan, &chosen.plan]) {
+            remarks.add(Code::BeyondLimit, 1, message);
+        }
+    }
     let past = outcome::Past {
         gain: inputs.learning.gain,
         trust: history.trust(),
@@ -253,7 +258,8 @@ fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, Repl
         Ok((Some(plan.clone()), sampled(&request.setup, &motion)?))
     };
     let others = search.plans.iter().map(sample);
-    if search.keeps() || search.plans.is_empty() {
+    // A plan whose times are not known is one that was run all the same.
+    if search.keeps() || search.evaluation.is_none() || search.plans.is_empty() {
         return std::iter::once(Ok((None, last.plan.clone()))).chain(others).collect();
     }
     others.collect()

@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Candidate, Commanded, Decision, HeldTo, PastRun, Predicted, ReplanFailure, Response, command::SHARPEST,
+    Candidate, Commanded, Decision, HeldTo, PastRun, Predicted, ReplanFailure, Response,
+    command::{SHARPEST, gentle},
     last::Last,
+    peaks::of_plan,
 };
 use crate::{
     fit::Fit,
@@ -14,7 +16,7 @@ use crate::{
     math::mean,
     plan::{PlanEvaluation, Timing},
     remark::{Code, Remarks},
-    replay::{Replay, Rules, replay},
+    replay::{Replay, Rules},
     series::{JointKind, Series, moving_s},
     task::{Ceilings, Objective, Objectives},
     workflow::{
@@ -74,7 +76,7 @@ impl MeasuredPeaks {
 
 impl Before {
     pub(super) fn of(recording: &Recording, last: &Last, predicted: Predicted, rules: &Rules) -> Self {
-        let found = replay(&recording.pairs(), rules);
+        let found = of_plan(recording, last.span_s, rules);
         let is_of = |kind: &JointKind| last.plan.tracks.iter().any(|track| track.kind() == *kind);
         let kinds = [JointKind::Turns, JointKind::Slides].into_iter().filter(is_of);
         let measured_peaks = kinds.map(|kind| MeasuredPeaks::of(kind, &found)).collect();
@@ -195,7 +197,10 @@ fn limited(command: &Commanded, remarks: &mut Remarks) {
     for joint in command.joints.iter().filter(|joint| joint.share < LEAST_SHARE) {
         let why = match joint.because {
             Some(limit) if !command.margins.is_empty() => format!("break the limit of {}", limit.name()),
-            _ => format!("accelerate it to more than {SHARPEST} times its plan, and no limit of it is known"),
+            _ => format!(
+                "accelerate it to more than {SHARPEST} times its plan and more than {} a second squared, and no limit of it is known",
+                joint.kind.says(gentle(joint.kind))
+            ),
         };
         let message = format!(
             "{:.0} % of the correction of {} is applied: more of it would {why}",

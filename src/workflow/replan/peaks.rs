@@ -2,7 +2,22 @@
 
 use std::collections::BTreeMap;
 
-use crate::{replay::Replay, units::DEGREE_RAD};
+use crate::{
+    log::Recording,
+    replay::{Replay, Rules, replay},
+    units::DEGREE_RAD,
+};
+
+/// A start belongs to a plan that begins or ends at most by this before or after it, s.
+const NEAR_S: f64 = 0.2;
+
+/// A replay with the transitions alone of what a log has of a plan between two instants, s: what else it holds, before or after, says
+/// nothing of it.
+pub(super) fn of_plan(recording: &Recording, [from_s, to_s]: [f64; 2], rules: &Rules) -> Replay {
+    let mut found = replay(&recording.pairs(), rules);
+    found.transitions.retain(|start| (from_s - NEAR_S..=to_s + NEAR_S).contains(&start.planned_onset_s));
+    found
+}
 
 /// A peak stands alone that is above the next largest of its joint by this factor, and by this, rad, in a joint of so many starts, and that
 /// no other run has by this share.
