@@ -87,7 +87,7 @@ fn a_crane_with_a_telescope_is_planned_run_and_better_for_its_next_command() {
     assert!(row.contains(" mm/s ") && row.contains(" mm/s2 "), "{next}");
     // What is expected is told of each kind in its unit; of both together no unit of one is true.
     let next = clean(folder, "replan run.mcap --keep-plan -o next.mcap");
-    for part in ["worst transition peak deg ", "worst transition peak mm ", " (rad, m) last, "] {
+    for part in ["worst transition peak deg ", "worst transition peak mm ", " % of the last is expected"] {
         assert!(next.contains(part), "{part}: {next}");
     }
     driven(folder, "next.mcap", "came.csv");
