@@ -10,9 +10,13 @@ pub(super) fn told([before, after]: [&[Report]; 2], by_runs: bool, remarks: &mut
     let began = |side: &[Report]| -> Option<Vec<i64>> {
         side.iter().map(|run| Some(run.source.began_ns()? / 1000)).collect()
     };
+    let count = |mut began_us: Vec<i64>| {
+        began_us.sort_unstable();
+        days(&began_us, &[]).len()
+    };
     let Some((before, after)) = began(before).zip(began(after)).filter(|_| by_runs) else { return };
-    let of_one = days(before.clone()).min(days(after.clone())) == 1;
-    let apart = days([before, after].concat()) > 1;
+    let of_one = count(before.clone()).min(count(after.clone())) == 1;
+    let apart = count([before, after].concat()) > 1;
     let message = "the runs of a side are of one day: what differs from day to day, such as oil, load and weather, is in the change, and in \
                    neither its interval nor p; runs of three days a side tell it apart";
     remarks.add(Code::FewDays, u64::from(of_one && apart), message);

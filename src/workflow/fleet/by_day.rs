@@ -6,41 +6,30 @@ use super::{
     history::{History, Values},
     run::Run,
 };
-use crate::workflow::days::is_of_day;
+use crate::workflow::days::days;
 
 impl History {
     /// The same with one run a day of each machine that ran on enough days, by the starts of these; of a start its mean over the day,
-    /// which begins with its first run. At `split_us` a day ends. Also the machines that ran several times on fewer days.
-    pub(super) fn by_day(
-        &self,
-        split_us: Option<i64>,
-        enough: impl Fn(&[i64]) -> bool,
-    ) -> (Self, Vec<String>) {
-        let mut of_machines: BTreeMap<&str, Vec<Vec<usize>>> = BTreeMap::new();
+    /// which begins with its first run. At each of `splits_us` a day ends. Also the machines that ran several times on fewer days.
+    pub(super) fn by_day(&self, splits_us: &[i64], enough: impl Fn(&[i64]) -> bool) -> (Self, Vec<String>) {
+        let mut of_machines: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for (k, run) in self.runs.iter().enumerate() {
-            let days = of_machines.entry(&run.machine).or_default();
-            let began = |at: usize| self.runs[at].started_us;
-            let ends =
-                |from_us: i64| split_us.is_some_and(|at_us| from_us < at_us && at_us <= run.started_us);
-            let same = |day: &&mut Vec<usize>| {
-                let ends_us = [began(day[0]), began(day[day.len() - 1])];
-                is_of_day(ends_us, run.started_us) && !ends(ends_us[1])
-            };
-            match days.last_mut().filter(same) {
-                Some(day) => day.push(k),
-                None => days.push(vec![k]),
-            }
+            of_machines.entry(&run.machine).or_default().push(k);
         }
         // The first run of the day that each run is of.
         let mut first: Vec<usize> = (0..self.runs.len()).collect();
         let mut few = Vec::new();
-        for (machine, days) in of_machines {
-            if days.iter().all(|day| day.len() == 1) {
+        for (machine, runs) in of_machines {
+            let began_us: Vec<i64> = runs.iter().map(|run| self.runs[*run].started_us).collect();
+            let days = days(&began_us, splits_us);
+            if days.len() == runs.len() {
                 continue;
             }
-            if enough(&days.iter().map(|day| self.runs[day[0]].started_us).collect::<Vec<_>>()) {
-                for (day, run) in days.iter().flat_map(|day| day.iter().map(|run| (day[0], *run))) {
-                    first[run] = day;
+            if enough(&days.iter().map(|day| began_us[day.start]).collect::<Vec<_>>()) {
+                for day in days {
+                    for run in &runs[day.clone()] {
+                        first[*run] = runs[day.start];
+                    }
                 }
             } else {
                 few.push(machine.to_owned());
@@ -95,13 +84,13 @@ mod tests {
         let values = ["A", "B"]
             .map(|machine| ((axis(machine), By::Peak), Values::from([(event.clone(), of(machine))])));
         let history = History { runs: runs.clone(), values: values.into(), ..History::default() };
-        let (daily, few) = history.by_day(None, |days| days.len() >= 4);
+        let (daily, few) = history.by_day(&[], |days| days.len() >= 4);
         assert_eq!((daily.runs.len(), few), (4 + 3, vec!["B".to_owned()]));
         let means = |machine: &str| -> Vec<f64> {
             daily.values[&(axis(machine), By::Peak)][&event].values().copied().collect()
         };
         assert_eq!((means("A"), means("B")), (vec![3.0, 27.0, 51.0, 75.0], vec![1.0, 2.0, 3.0]));
-        let (split, _) = history.by_day(Some(25 * HOUR_US), |days| days.len() >= 4);
+        let (split, _) = history.by_day(&[25 * HOUR_US], |days| days.len() >= 4);
         assert_eq!(split.runs.iter().filter(|run| run.machine == "A").count(), 5);
     }
 }

@@ -46,13 +46,23 @@ pub(super) fn without_undated(runs: &mut Vec<Run>, remarks: &mut Remarks) {
     runs.retain(Run::is_dated);
 }
 
+/// Says of machines of which something was found by several runs on few days what these do not tell.
+pub(super) fn few_days(machines: &[String], remarks: &mut Remarks) {
+    let message = format!(
+        "machines whose runs are of too few days, as {}: what differs from day to day, such as oil and load, is not known, and what is \
+         found may be of that alone",
+        machines.first().map_or("", String::as_str)
+    );
+    remarks.add(Code::FewDays, machines.len() as u64, message);
+}
+
 /// Says of which runs day and month may be the other way round.
 pub(super) fn orders(runs: &[Run], doubtful: &BTreeSet<String>, remarks: &mut Remarks) {
     let mut of_them = runs.iter().filter(|run| doubtful.contains(&run.id)).peekable();
     let Some(first) = of_them.peek() else { return };
     let message = format!(
         "runs in whose dates the day or the month may come first, as {}, which is taken to be of {}: if that is wrong, \
-         `hydrotrace import LOG --time-unit mdy --save-map map.toml` (or dmy) and a scan with --map map.toml set it right",
+         `hydrotrace import LOG --time-unit mdy --save-map map.toml -o checked.mcap` (or dmy) and a scan with --map map.toml set it right",
         name(first),
         date(days(first)).unwrap_or_default().get(..10).unwrap_or_default()
     );

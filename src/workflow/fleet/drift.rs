@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     common::Commons,
+    doubts,
     failure::FleetFailure,
     found::judge,
     history::{Axis, By, Filter, History, Scatters, Values},
@@ -81,9 +82,10 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
     history.check_joint(filter)?;
     let wanted = |machine: &str| filter.machine.as_ref().is_none_or(|own| own == machine);
     let shown = |joint: &str| filter.joint.as_ref().is_none_or(|own| own == joint);
-    let (daily, of_few_days) = history.by_day(None, |days| days.len() >= FEWEST_RUNS);
+    let (daily, mut of_few_days) = history.by_day(&[], |days| days.len() >= FEWEST_RUNS);
     let (trends, few) = judged(&daily, by);
-    history.remarks.add(Code::FewDays, of_few_days.len() as u64, few_days(&of_few_days));
+    of_few_days.retain(|machine| trends.iter().any(|trend| trend.found && trend.machine == *machine));
+    doubts::few_days(&of_few_days, &mut history.remarks);
     let too_few = few.iter().filter(|axis| wanted(&axis.machine) && shown(&axis.joint)).count();
     let fewest_runs = fewest_runs(trends.len());
     let mut trends = clearest(trends);
@@ -157,15 +159,6 @@ fn judged<'a>(history: &'a History, by: &[By]) -> (Vec<JointTrend>, Vec<&'a Axis
         .collect();
     judge(&mut trends);
     (trends, too_few)
-}
-
-/// What is to be said of machines with several runs on few days.
-pub(super) fn few_days(machines: &[String]) -> String {
-    format!(
-        "machines whose runs are of too few days, as {}: what differs from day to day, such as oil and load, is not known, and what is \
-         found may be of that alone",
-        machines.first().map_or("", String::as_str)
-    )
 }
 
 /// Says which joints have another plan from a day on, so that nothing tells what they did on that very day.

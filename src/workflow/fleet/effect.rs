@@ -9,7 +9,7 @@ use std::{collections::BTreeSet, path::Path};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    drift::few_days,
+    doubts,
     failure::FleetFailure,
     history::{Axis, By, Filter, History, Values},
     joint_trend::{FEWEST_OF_A_SIDE, MOST_FALSE},
@@ -21,7 +21,7 @@ use super::{
 use crate::{
     document::PROGRAM,
     math::{SIGMA_PER_MAD, difference, false_discovery, mad, median},
-    remark::{Code, Remarks},
+    remark::Remarks,
     units::SECONDS_PER_DAY,
 };
 
@@ -135,7 +135,9 @@ pub fn effect(
         let before = days.iter().filter(|day_us| **day_us < at_us).count();
         before.min(days.len() - before) >= FEWEST_OF_A_SIDE
     };
-    let (daily, few) = history.by_day(Some(at_us), enough);
+    // What was done on a day parts it.
+    let splits_us: Vec<i64> = noted.iter().map(|note| note.at_us).chain([at_us]).collect();
+    let (daily, few) = history.by_day(&splits_us, enough);
     let own =
         daily.values.iter().filter(|((axis, metric), _)| axis.machine == machine && by.contains(metric));
     let mut effects = Vec::new();
@@ -160,8 +162,9 @@ pub fn effect(
         |after: bool| own_runs().filter(|run| whole.holds(run) && whole.is_after(run) == after).count();
     let [between, together] = whole.beside(&of_whole);
     let mut remarks = history.remarks.clone();
-    let few: Vec<String> = few.into_iter().filter(|few| few == machine).collect();
-    remarks.add(Code::FewDays, few.len() as u64, few_days(&few));
+    let found = effects.iter().any(|effect| effect.found);
+    let few: Vec<String> = few.into_iter().filter(|few| found && few == machine).collect();
+    doubts::few_days(&few, &mut remarks);
     Ok(Effect {
         format: FORMAT.to_owned(),
         program: PROGRAM.to_owned(),

@@ -78,7 +78,7 @@ pub struct JointTrend {
     pub since: Option<String>,
     /// Starts that were followed from run to run.
     pub starts: usize,
-    /// Runs with such starts.
+    /// Runs with such starts, those of a day as one where there are days enough.
     pub runs: usize,
     /// From the first run to the last, days.
     pub days: f64,

@@ -21,7 +21,12 @@ const SEEN: f64 = 1.25;
 const OTHER: f64 = 3.0;
 
 /// What a model leaves of a peak is much from here on, rad and m.
-const MUCH: (f64, f64) = (0.5 * DEGREE_RAD, 0.005);
+const fn much(kind: JointKind) -> f64 {
+    match kind {
+        JointKind::Turns => 0.5 * DEGREE_RAD,
+        JointKind::Slides => 0.005,
+    }
+}
 
 /// The machine: fitted, or from a file; with the names of the logs behind it.
 pub(super) fn machine(
@@ -62,8 +67,7 @@ pub(super) fn machine(
 fn of_another(known: &JointFit, held: &JointFit, file: &Path) -> Option<String> {
     let [was, is] = [known, held].map(|joint| joint.unexplained_peak_rad);
     let (was_rad, is_rad) = (was?[0], is?[0]);
-    let much_rad = if known.kind == JointKind::Slides { MUCH.1 } else { MUCH.0 };
-    (known.trusted() && is_rad > much_rad && is_rad > OTHER * was_rad).then(|| {
+    (known.trusted() && is_rad > much(known.kind) && is_rad > OTHER * was_rad).then(|| {
         format!(
             "the model of {} in {} leaves {} of the peaks in these runs, and {} in those that it was fitted to: it is of another machine, or of \
              another condition; without --limits the runs themselves are fitted",
