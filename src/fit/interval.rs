@@ -234,10 +234,13 @@ impl Knowledge {
         let play = part(HYSTERESIS, model.hysteresis_rad_s / whole_rad_s);
         let gain = part(POSITION_GAIN, -1.0);
         let missed = behind(problem, discrepancy::DEAD_BAND);
-        [
+        let [speed, error] = [
             (whole_rad_s, &[band, stiction, play][..]),
             (whole_rad_s / model.position_gain_1_s, &[band, stiction, play, gain]),
         ]
-        .map(|(value, parts)| self.unfiltered(problem, x, self.positive(value, parts, missed)))
+        .map(|(value, parts)| self.unfiltered(problem, x, self.positive(value, parts, missed)));
+        // Without a feed-forward all that is wanted scales with the gain, which smooth runs do not tell.
+        let scaled = self.sharp || problem.shown.feed_forward;
+        [Estimated { identified: speed.identified && scaled, ..speed }, error]
     }
 }

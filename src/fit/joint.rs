@@ -100,7 +100,21 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
         problem.shown.limits = seen;
         found = problem.descend(found.x, 30, &mut workspace);
     }
+    let (plain, before) = (problem.clone(), found.clone());
     found = structured(&mut problem, found, &mut workspace);
+    if problem.shown.valve.beyond
+        && let SetValues::Late(late, shown, _) = SetValues::of(&plain, &before, &mut workspace)
+    {
+        // What opens beyond its speed may stand in for set values that come late.
+        let mut other = Problem { shown, ..plain };
+        let late = structured(&mut other, late, &mut workspace);
+        let scale_rad = found.scale_rad;
+        if other.cost_at(&late.x, scale_rad, &mut workspace)
+            < problem.cost_at(&found.x, scale_rad, &mut workspace)
+        {
+            (problem, found) = (other, late);
+        }
+    }
     if let Some(edged) = edge(&problem, &found, &mut workspace) {
         problem.shown.valve.edge = true;
         found = edged;
@@ -151,6 +165,9 @@ fn fed(problem: &mut Problem, mut found: Estimate, workspace: &mut Workspace) ->
             FeedForward::MayBeNone(model) => rivals.push(*model),
             FeedForward::Some => {}
         }
+    }
+    if problem.shown.late {
+        return (found, rivals);
     }
     match SetValues::of(problem, &found, workspace) {
         SetValues::Late(late, shown, prompt) => {

@@ -281,7 +281,8 @@ fn structure(fit: &Fit) -> Vec<String> {
             )
         }),
     );
-    let held = fit.joints.iter().filter(|joint| joint.model_holds);
+    // Where the gain is not known, neither is a speed by it.
+    let held = fit.joints.iter().filter(|joint| joint.model_holds && joint.position_gain_1_s.identified);
     let held: Vec<String> = held
         .filter_map(|joint| {
             let limit = joint.model.integral_limit_rad_s?;
