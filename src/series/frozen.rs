@@ -79,10 +79,12 @@ pub fn seen(planned: &Track, measured: &Track) -> Option<Track> {
     if stood == 0 || stood as f64 > most * q.len() as f64 {
         return None;
     }
-    // The first sample of a stretch was measured.
+    // The first sample of a stretch was measured, unless what it shows is a value for faults.
     let mut keeps = vec![true; q.len()];
     for stretch in still {
-        keeps[stretch.start + 1..stretch.end].fill(false);
+        let jumped =
+            stretch.start > 0 && (q[stretch.start] - q[stretch.start - 1]).abs() > FARTHER * farthest;
+        keeps[stretch.start + usize::from(!jumped)..stretch.end].fill(false);
     }
     measured.keeping(|k| keeps[k])
 }

@@ -51,10 +51,13 @@ pub fn plan_tracks(trajectories: &[PlannedTrajectory], measured: &Series) -> (Se
             .filter_map(|s| s.start.checked_sub(start))
             .filter(|&cut| cut > 0)
             .collect();
+        // Where lines join the points, the slope of the one that begins there is no speed.
+        let curves = pieces.iter().flat_map(|piece| &piece.knots).all(|knot| knot.has_velocity);
         let planned =
-            Track::of(track.kind(), track.name(), t_s, states.iter().map(|s| s.position).collect(), &cuts)
-                .and_then(|planned| planned.with_velocity(states.iter().map(|s| s.velocity).collect()));
-        tracks.extend(planned.ok());
+            Track::of(track.kind(), track.name(), t_s, states.iter().map(|s| s.position).collect(), &cuts);
+        let speeds = || states.iter().map(|s| s.velocity).collect();
+        tracks
+            .extend(planned.and_then(|own| if curves { own.with_velocity(speeds()) } else { Ok(own) }).ok());
     }
     let replaced = trajectories
         .windows(2)
@@ -179,8 +182,12 @@ mod tests {
     #[test]
     fn points_without_velocity_are_joined_by_lines() {
         let plan = [trajectory(2.0, &[(2.0, 0.0, None), (4.0, 1.0, None)])];
-        let state = plan_at(&plan, 2.5).unwrap();
-        assert!((state.position - 0.25).abs() < 1e-12 && (state.velocity - 0.5).abs() < 1e-12);
+        assert!((plan_at(&plan, 2.5).unwrap().position - 0.25).abs() < 1e-12);
+        let speeds =
+            |plan: &[PlannedTrajectory]| plan_tracks(plan, &measured()).0.tracks[0].velocity().is_some();
+        assert!(
+            !speeds(&plan) && speeds(&[trajectory(2.0, &[(2.0, 0.0, Some(0.0)), (4.0, 1.0, Some(0.0))])])
+        );
     }
 
     #[test]

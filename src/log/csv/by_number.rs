@@ -8,6 +8,7 @@ use super::{
     rows::Rows,
     unit::{FARTHEST_DEG, FARTHEST_RAD},
 };
+use crate::math::median;
 
 /// Rows of a time that do not rise, as where a recorder was started again: one in so many.
 const SELDOM: usize = 1000;
@@ -19,6 +20,9 @@ const MOST_ROWS: usize = 4000;
 /// Two columns follow each other where they differ by less than this share of how far they move, root mean square, and not at all
 /// nowhere.
 const ALIKE: f64 = 0.3;
+
+/// A column that is so many times as noisy as the other was measured.
+const NOISIER: f64 = 3.0;
 
 impl Look<'_> {
     /// The options that name columns of a table without names by their number; none of one with names.
@@ -108,6 +112,10 @@ fn pairs(values: &[(usize, Vec<f64>)]) -> Vec<[usize; 2]> {
         |column: usize| values.iter().find(|(other, _)| *other == column).map_or(&[][..], |(_, own)| own);
     let leads = |pair: &&[usize; 2]| {
         let [a, b] = pair.map(own);
+        let [of_a, of_b] = [noise(a), noise(b)];
+        if of_a.max(of_b) > NOISIER * of_a.min(of_b) {
+            return of_a < of_b;
+        }
         let off = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
         off(&a[1..], b) > off(a, &b[1..])
     };
@@ -117,6 +125,11 @@ fn pairs(values: &[(usize, Vec<f64>)]) -> Vec<[usize; 2]> {
         }
     }
     found
+}
+
+/// What usually comes between three values besides a line: of a plan nothing, whether it goes smoothly or in steps.
+fn noise(values: &[f64]) -> f64 {
+    median(values.windows(3).map(|three| (three[2] - 2.0 * three[1] + three[0]).abs()).collect())
 }
 
 /// By how much columns that move nearly alike differ, as a share of how far they move; `None` of others.

@@ -29,7 +29,7 @@ pub(super) enum Part {
 }
 
 /// Tried in this order: of two that fit, the first is meant more often.
-const FORMS: [(&str, &str, Part); 35] = [
+const FORMS: [(&str, &str, Part); 39] = [
     ("%Y-%m-%d %H:%M:%S%.f%#z", "yyyy-mm-dd hh:mm:ss with zone", Part::Zoned),
     ("%Y-%m-%d %H:%M:%S%.f", "yyyy-mm-dd hh:mm:ss", Part::Local),
     ("%Y/%m/%d %H:%M:%S%.f", "yyyy/mm/dd hh:mm:ss", Part::Local),
@@ -64,6 +64,10 @@ const FORMS: [(&str, &str, Part); 35] = [
     ("%d.%m.%Y", "dd.mm.yyyy", Part::Day),
     ("%d/%m/%Y", "dd/mm/yyyy", Part::Day),
     ("%m/%d/%Y", "mm/dd/yyyy", Part::Day),
+    ("%d.%m.%y", "dd.mm.yy", Part::Day),
+    ("%d/%m/%y", "dd/mm/yy", Part::Day),
+    ("%m/%d/%y", "mm/dd/yy", Part::Day),
+    ("%y-%m-%d", "yy-mm-dd", Part::Day),
     ("", elapsed::NAME, Part::Elapsed),
 ];
 
@@ -103,7 +107,7 @@ impl DateForm {
     /// The instant in a cell, ns since 1970 (UTC where the text gives no zone), or since midnight
     /// for a time of day.
     pub(super) fn ns(&self, cell: &[u8]) -> Option<i64> {
-        let text = std::str::from_utf8(cell).ok()?.trim();
+        let text = of_plc(std::str::from_utf8(cell).ok()?.trim());
         let parsed = || {
             let mut parsed = Parsed::new();
             let plain = if self.counts > 0 { padded(&plain(text)?, self.counts)? } else { plain(text)? };
@@ -123,6 +127,13 @@ impl DateForm {
             Part::Elapsed => elapsed::elapsed_ns(text),
         }
     }
+}
+
+/// A date or a time of day without what IEC 61131-3 writes before it, as in `DT#2025-03-10-14:05:15.020`.
+pub(super) fn of_plc(text: &str) -> &str {
+    const KINDS: [&str; 8] = ["dt", "ldt", "date_and_time", "tod", "ltod", "time_of_day", "d", "date"];
+    let is = |kind: &&(&str, &str)| KINDS.iter().any(|known| kind.0.eq_ignore_ascii_case(known));
+    text.split_once('#').as_ref().filter(is).map_or(text, |(_, rest)| rest)
 }
 
 /// Whether a text begins as `Sat Aug 31` does.
@@ -246,6 +257,8 @@ mod tests {
             "06/15/2025 15:06:40.020",
             "06/15/2025 03:06:40.020 PM",
             "2025-06-15-15:06:40.020",
+            "DT#2025-06-15-15:06:40.020",
+            "LDT#2025-06-15-15:06:40.020",
             "20250615 150640.020",
             "20250615T150640.020Z",
             "15.06.25 15:06:40.020",

@@ -8,7 +8,7 @@ use super::{
     CsvOptions,
     dialect::{Dialect, detect, head},
     label::{Label, label},
-    number::{Looks, looks},
+    number::{Looks, looks, says_absent},
     rows::{Rows, cell_text},
     scale::unit_alone,
 };
@@ -159,7 +159,8 @@ pub(super) fn numbered(width: usize) -> Vec<String> {
 /// Whether a row is one of numbers: as wide as most, and no more words than numbers; or a time and a number beside words
 /// that say of what it is.
 fn is_data(record: &ByteRecord, width: usize) -> bool {
-    let all: Vec<Looks> = record.iter().map(looks).filter(|looks| *looks != Looks::Empty).collect();
+    let told = record.iter().filter(|cell| !says_absent(cell));
+    let all: Vec<Looks> = told.map(looks).filter(|looks| *looks != Looks::Empty).collect();
     let words = all.iter().filter(|looks| **looks == Looks::Text).count();
     let numbers = all.len() - words;
     record.len() == width && !all.is_empty() && (words < numbers || numbers >= 2)
@@ -235,6 +236,16 @@ mod tests {
         assert_eq!(head.names, ["t", "q ist", "q soll"]);
         assert_eq!((head.line, head.first_line, head.units.is_some()), (3, 5, true));
         assert_eq!(head.sample.len(), 5);
+    }
+
+    #[test]
+    fn a_header_stays_where_the_first_rows_say_that_there_is_no_value() {
+        for absent in ["n/a", "NULL", "-", "#N/A", "no data"] {
+            let head = of(&format!(
+                "t_s,q_set,q_act\n0.00,{absent},{absent}\n0.02,{absent},1\n0.04,1,2\n0.06,1,2\n"
+            ));
+            assert_eq!((head.names[0].as_str(), head.first_line), ("t_s", 2), "{absent}");
+        }
     }
 
     #[test]

@@ -1,6 +1,12 @@
 //! Numbers as files write them, with a decimal point or a decimal comma.
 
-use super::{date::names_month, elapsed::elapsed_ns, rows::cell_text, scale::unit_named, unit::Unit};
+use super::{
+    date::{names_month, of_plc},
+    elapsed::elapsed_ns,
+    rows::cell_text,
+    scale::unit_named,
+    unit::Unit,
+};
 use crate::units::whole_ns;
 
 /// A number near zero without an exponent has some 345 characters, and `export` writes those.
@@ -116,6 +122,15 @@ pub(super) enum Looks {
     Text,
 }
 
+/// Whether a cell says that there was no number, as a sensor does that is not up yet.
+pub(super) fn says_absent(cell: &[u8]) -> bool {
+    const WORDS: [&[u8]; 17] = [
+        b"nan", b"inf", b"-inf", b"na", b"n/a", b"#n/a", b"null", b"none", b"-", b"--", b"---", b"***",
+        b"bad", b"no data", b"1.#qnan", b"1.#ind", b"-1.#ind",
+    ];
+    WORDS.iter().any(|word| cell.trim_ascii().eq_ignore_ascii_case(word))
+}
+
 pub(super) fn looks(cell: &[u8]) -> Looks {
     let cell = cell.trim_ascii();
     if cell.is_empty() {
@@ -134,6 +149,7 @@ pub(super) fn looks(cell: &[u8]) -> Looks {
             if let Some((digits, _)) = with_unit(cell) {
                 return looks(digits);
             }
+            let cell = std::str::from_utf8(cell).map_or(cell, |text| of_plc(text).as_bytes());
             let dated = cell.len() >= 8
                 && cell[0].is_ascii_digit()
                 && (has(b':') || !has(b';') && !has(b','))

@@ -10,7 +10,7 @@ use super::{
     column::clip,
     dialect::Dialect,
     head::Head,
-    number::number,
+    number::{number, says_absent},
     row_order::{self, FEWEST},
     rows::{Rows, cell_text},
     time::{TimeSource, Wraps},
@@ -285,12 +285,6 @@ impl Column {
         remarks.add(Code::NotFinite, all, format!("cells of {name:?}, all of them, are empty"));
         Ok(())
     }
-}
-
-/// Whether a cell says that there was no number, as a sensor does that is not up yet.
-fn says_absent(cell: &[u8]) -> bool {
-    const WORDS: [&[u8]; 9] = [b"nan", b"inf", b"-inf", b"na", b"n/a", b"#n/a", b"null", b"none", b"-"];
-    WORDS.iter().any(|word| cell.trim_ascii().eq_ignore_ascii_case(word))
 }
 
 /// Drops rows that no message can be stamped with; how many.

@@ -45,12 +45,21 @@ impl Look<'_> {
         };
         // What stands before the unit: a message has more stamps than one.
         let stem = |column: usize| self.head.names[column].trim_end_matches(char::is_alphabetic);
-        let wholes: Vec<_> = usable.iter().filter_map(seconds).collect();
+        // Which of a date is the day is as doubtful as without the part.
+        let doubt = |found: &Found| {
+            found
+                .doubt
+                .clone()
+                .filter(|_| matches!(found.source, TimeSource::Date { .. } | TimeSource::DayAndTime { .. }))
+        };
+        let wholes: Vec<_> =
+            usable.iter().filter_map(|found| Some((seconds(found)?, doubt(found)))).collect();
         let pairs = wholes.iter().flat_map(|whole| parts.iter().map(move |part| (whole, *part)));
-        let joined = pairs.filter_map(|(whole, (part, unit))| {
+        let joined = pairs.filter_map(|((whole, doubt), (part, unit))| {
             let columns = whole.columns();
             let of_another = columns.iter().all(|column| stem(*column) != stem(part));
-            let found = self.found(TimeSource::WithPart { whole: Box::new(whole.clone()), part, unit }, None);
+            let found = self
+                .found(TimeSource::WithPart { whole: Box::new(whole.clone()), part, unit }, doubt.clone());
             // The finest counts: others may say the same less finely.
             (!columns.contains(&part)).then_some(((!found.resolves, of_another, unit.factor), found))
         });

@@ -16,7 +16,7 @@ pub(super) enum Meaning {
     Name,
 }
 
-const PLANNED: &str = "expected desiderata desiderato desiderate desiderati deseada deseado deseadas deseados théorique theorique ideal leader target targets tgt ziel vorgabe demanded requested planned plan desired des reference references ref rpos setp setpoint setpoints ipo set sp rsol soll sollwert goal nominal nom demand \
+const PLANNED: &str = "tar sv expected desiderata desiderato desiderate desiderati deseada deseado deseadas deseados théorique theorique ideal leader target targets tgt ziel vorgabe demanded requested planned plan desired des reference references ref rpos setp setpoint setpoints ipo set sp rsol soll sollwert goal nominal nom demand \
     wanted consigne req requests dmd tavoite mål målvärde børverdi trajectory traj fuehrung aspos consigna referencia riferimento alvo ohje ohjearvo börvärde zadana zadane zadany desejado desejada desejados cible hedef gewenst gewenste žádaná požadovaná \
     规划 规划值 计划 期望 期望值 目标 目标值 设定 设定值 给定 给定值 参考 参考值 目標 目標値 設定値 목표 목표값 \
     задание задано заданное заданный уставка план";

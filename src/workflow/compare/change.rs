@@ -16,18 +16,23 @@ pub struct Change {
     pub after: Option<f64>,
     /// After minus before.
     pub difference: Option<f64>,
-    /// After over before; 1 if both are zero, `None` if only the one before is.
+    /// After over before; 1 if both are zero, `None` if only the one before is, but for rounding.
     pub ratio: Option<f64>,
 }
+
+/// What is smaller than another by this factor is nothing beside it.
+const ROUNDING: f64 = 1e-6;
 
 impl Change {
     /// From both values.
     pub fn new(before: Option<f64>, after: Option<f64>) -> Self {
         let both = before.zip(after);
-        let ratio = both.and_then(|(before, after)| match (before.abs() > 0.0, after.abs() > 0.0) {
-            (true, _) => Some(after / before),
-            (false, false) => Some(1.0),
-            (false, true) => None,
+        let ratio = both.and_then(|(before, after)| {
+            match (before.abs() > ROUNDING * after.abs(), after.abs() > 0.0) {
+                (true, _) => Some(after / before),
+                (false, false) => Some(1.0),
+                (false, true) => None,
+            }
         });
         Self { before, after, difference: both.map(|(before, after)| after - before), ratio }
     }

@@ -29,7 +29,7 @@ pub struct Gathered {
     /// Joints whose plan was read; none of a measurement alone.
     #[serde(default)]
     pub planned_joints: usize,
-    /// From the first to the last measurement, s.
+    /// From the first to the last sample, planned or measured, s.
     pub duration_s: f64,
     /// Doubts about the data.
     pub remarks: Remarks,
@@ -57,6 +57,9 @@ pub fn gather(inputs: &Inputs) -> Result<Gathered, JoinFailure> {
             output: inputs.output.clone(),
         });
     }
+    let ends_s = run.planned.span_s().into_iter().chain([[from_s, to_s]]);
+    let [least_s, most_s] =
+        ends_s.fold([from_s, to_s], |[a, b], [begins_s, ends_s]| [a.min(begins_s), b.max(ends_s)]);
     let (files, messages, unknown) = log.gather(&inputs.output)?;
     run.remarks.add(
         Code::UnknownChannel,
@@ -70,7 +73,7 @@ pub fn gather(inputs: &Inputs) -> Result<Gathered, JoinFailure> {
         messages,
         joints: run.measured.tracks.len(),
         planned_joints: run.planned.tracks.len(),
-        duration_s: to_s - from_s,
+        duration_s: most_s - least_s,
         remarks: run.remarks,
     })
 }
