@@ -18,13 +18,14 @@ pub struct Inertia {
 impl Inertia {
     /// A body by its mass, kg, centre of mass, m, and inertia tensor about that centre, kg m².
     ///
-    /// `None` unless everything is finite and the mass is not negative.
+    /// `None` unless everything is finite and neither the mass nor a moment about an axis is negative.
     pub fn new(mass_kg: f64, centre_m: Vector3<f64>, tensor_kg_m2: Matrix3<f64>) -> Option<Self> {
         let about_centre = Matrix3::identity() * (0.5 * tensor_kg_m2.trace()) - tensor_kg_m2;
         let second_kg_m2 = about_centre + centre_m * centre_m.transpose() * mass_kg;
         let body = Self { mass_kg, first_kg_m: centre_m * mass_kg, second_kg_m2 };
         let numbers = std::iter::once(&body.mass_kg).chain(&body.first_kg_m).chain(&body.second_kg_m2);
-        (mass_kg >= 0.0 && numbers.into_iter().all(|x| x.is_finite())).then_some(body)
+        let turns = (0..3).all(|axis| tensor_kg_m2[(axis, axis)] >= 0.0);
+        (mass_kg >= 0.0 && turns && numbers.into_iter().all(|x| x.is_finite())).then_some(body)
     }
 
     /// A mass without extent, kg, at a place, m; conditions as in [`Inertia::new`].

@@ -17,6 +17,8 @@ const PATIENCE: usize = 25;
 const FAR: f64 = 1e-3;
 /// A pose counts as reached, m and rad.
 const REACHED: f64 = 1e-11;
+/// So does one that an arm of few joints comes so near and no nearer, m and rad: descriptions round their angles.
+const ROUNDED: f64 = 1e-5;
 /// Steps of Newton's method to a pose nearby.
 const ONTO: usize = 8;
 /// Further than this the tool's motion is no longer nearly linear, m or rad.
@@ -27,6 +29,13 @@ const DAMPING: f64 = 0.01;
 const RETURN: f64 = 0.5;
 /// Directions that the tool can move in at less than this, against the easiest, it cannot.
 const RIGID: f64 = 1e-9;
+
+/// A posture and what it leaves to the pose.
+struct Nearest {
+    distance_m: f64,
+    angle_rad: f64,
+    found: DVector<f64>,
+}
 
 impl Chain {
     /// The same with other ranges of the joints, rad; missing ones stay.
@@ -52,22 +61,23 @@ impl Chain {
         let near = DVector::from_fn(self.joint_count(), |i, _| {
             near_rad.get(i).copied().filter(|q| q.is_finite()).unwrap_or(0.0)
         });
-        let mut least = (f64::INFINITY, f64::INFINITY);
+        let mut least = Nearest { distance_m: f64::INFINITY, angle_rad: f64::INFINITY, found: near.clone() };
         let best = self
             .nearest(pose, &near, &mut least, |start| self.descend(pose, start, &near, RETURN))
             // Between the ends of narrow ranges the way back may hold what the pose needs.
             .or_else(|| self.nearest(pose, &near, &mut least, |start| self.there(pose, start, &near)));
-        best.map(|found| found.iter().copied().collect())
-            .ok_or(ArmError::Unreachable { distance_m: least.0, angle_rad: least.1 })
+        let Nearest { distance_m, angle_rad, found } = least;
+        best.or_else(|| (distance_m.max(angle_rad) < ROUNDED).then_some(found))
+            .map(|found| found.iter().copied().collect())
+            .ok_or(ArmError::Unreachable { distance_m, angle_rad })
     }
 
-    /// Of the postures that descents from the starts find at a pose the nearest; in `least` goes what the nearest attempt leaves,
-    /// m and rad.
+    /// Of the postures that descents from the starts find at a pose the nearest; in `least` goes the nearest attempt.
     fn nearest(
         &self,
         pose: &Pose,
         near: &DVector<f64>,
-        least: &mut (f64, f64),
+        least: &mut Nearest,
         descent: impl Fn(DVector<f64>) -> DVector<f64>,
     ) -> Option<DVector<f64>> {
         let mut best: Option<DVector<f64>> = None;
@@ -78,8 +88,8 @@ impl Chain {
             let found = descent(self.start(start, near));
             let left = self.left(pose, &found);
             let (distance_m, angle_rad) = (left.fixed_rows::<3>(0).norm(), left.fixed_rows::<3>(3).norm());
-            if distance_m + angle_rad < least.0 + least.1 || least.0.is_infinite() {
-                *least = (distance_m, angle_rad);
+            if distance_m + angle_rad < least.distance_m + least.angle_rad || least.distance_m.is_infinite() {
+                *least = Nearest { distance_m, angle_rad, found: found.clone() };
             }
             let nearer = best.as_ref().is_none_or(|best| (&found - near).norm() < (best - near).norm());
             if left.norm() < REACHED && nearer {
@@ -119,6 +129,11 @@ impl Chain {
     pub fn is_at(&self, pose: &Pose, position_rad: &[f64], within: f64) -> bool {
         position_rad.len() == self.joint_count()
             && self.left(pose, &DVector::from_column_slice(position_rad)).norm() < within
+    }
+
+    /// A pose, or the one that a posture has in place of it where it is not the same to rounding.
+    pub(crate) fn pose_beside(&self, pose: Pose, position_rad: &[f64]) -> Pose {
+        if self.is_at(&pose, position_rad, REACHED) { pose } else { self.tool_pose(position_rad) }
     }
 
     /// Starts after the first follow the multiples of powers of the generalised golden ratio.

@@ -254,7 +254,11 @@ impl<'a> Tree<'a> {
         let tensor = Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);
         let body = Inertia::new(given.mass.value, Vector3::zeros(), tensor).ok_or_else(|| {
             let found = format!("mass {} kg, inertia {i:?}", given.mass.value);
-            self.at.unexpected(&element, found, "finite numbers and a mass that is not negative")
+            self.at.unexpected(
+                &element,
+                found,
+                "finite numbers, and neither mass nor moments of inertia negative",
+            )
         })?;
         Ok((body, self.pose(&given.origin, &element)?))
     }

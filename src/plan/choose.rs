@@ -9,10 +9,7 @@ use super::{
     front::best_of,
     goal::{Goal, Merit},
 };
-use crate::{
-    moea::das_dennis,
-    task::{ByObjective, Ceilings, Objective, Objectives, Weights},
-};
+use crate::task::{ByObjective, Ceilings, Objective, Objectives, Weights};
 
 /// How to choose among the plans that keep to the ceilings and, where none is set on time, take at most [`HORIZON`] times
 /// as long as the fastest of them. Objectives are scaled by their range over those plans: slower ones, down to a standstill,
@@ -23,9 +20,8 @@ pub enum Rule {
     Weights,
     /// Nearest to the point that has the best of every objective.
     Ideal,
-    /// Where giving up a little of one objective costs most of another: the largest expected loss
-    /// under all weights if the plan were not there (Branke, Deb, Dierolf and Osswald 2004,
-    /// doi:10.1007/978-3-540-30217-9_73).
+    /// Where a convex front bulges most from the plane through its ends, each objective scaled by its range (Das 1999,
+    /// doi:10.1007/BF01195985): equal weights, whatever the task weighs.
     Knee,
     /// The best of one objective.
     Best(Objective),
@@ -91,13 +87,8 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// By what share one plan is better than another by the rule, at the prices that it has at the chosen plan. A knee has
-    /// none: there a plan is better by what it gains in the objective that gains least.
+    /// By what share one plan is better than another by the rule, at the prices that it has at the chosen plan.
     pub fn gain(&self, from: &Objectives, to: &Objectives) -> f64 {
-        if self.rule == Rule::Knee {
-            let gains = Objective::OF_PLAN.iter().map(|&k| 1.0 - to[k] / from[k]);
-            return gains.fold(f64::INFINITY, f64::min);
-        }
         let merit = self.merit.at_prices_of(&self.timing.objectives);
         let (before, after) = (merit.of(from), merit.of(to));
         if matches!(merit, Merit::Logarithms(_)) {
@@ -150,8 +141,6 @@ const LAST: u64 = 600;
 const QUICKENED: usize = 3;
 /// Distance that descents keep from ceilings, as a share of them.
 const ROUNDING: f64 = 1e-6;
-/// Divisions of the weights that knees are judged by.
-const WEIGHTS: usize = 12;
 
 /// Index of the plan that is best in each objective of a plan (A, B and C of the paper's table 3); `None`
 /// for an empty front.
@@ -213,13 +202,8 @@ pub fn choose(
     let scale = Scale::of(&within);
     let weights = weights.filter(|_| rule == Rule::Weights);
     let merit = scale.merit(rule, weights);
-    let picked = match rule {
-        Rule::Knee => knee(&within, &scale),
-        _ => within.iter().copied().min_by(|a, b| worth(merit, a).total_cmp(&worth(merit, b))),
-    };
+    let picked = within.iter().copied().min_by(|a, b| worth(merit, a).total_cmp(&worth(merit, b)));
     let picked = picked.ok_or(NoChoice::Empty)?;
-    // A knee is a knee of this front; from it one may only descend to what is better in everything.
-    let own = if rule == Rule::Knee { picked.objectives } else { own };
     let goal = Goal { merit, ceilings: own, evaluations: LAST, trust: NEARLY, enough: FINE };
     let end = descend(setup, &mut evaluator, &picked.interval_s, &goal);
     used += end.evaluations;
@@ -301,34 +285,16 @@ impl Scale {
 
     fn merit(&self, rule: Rule, weights: Option<Weights>) -> Merit {
         match rule {
-            Rule::Weights => {
+            // Where a convex front bulges most from the plane through its ends, scaled, its sum is least.
+            Rule::Weights | Rule::Knee => {
                 let given = weights.unwrap_or(Weights::ZERO.map_plan(|_| 1.0));
                 let sum: f64 = given.plan().iter().sum();
                 Merit::Sum(given.map_plan(|k| given[k] / sum / self.range[k]))
             }
             Rule::Ideal => Merit::Distance { ideal: self.ideal, scale: self.range },
-            Rule::Knee => Merit::even(),
             Rule::Best(objective) => Merit::alone(objective),
         }
     }
-}
-
-/// The plan whose absence would cost most, summed over weights for which it is the best.
-fn knee<'a>(plans: &[&'a Timing], scale: &Scale) -> Option<&'a Timing> {
-    let count = Objective::OF_PLAN.len();
-    let scaled = |f: &Objectives| f.map_plan(|k| (f[k] - scale.ideal[k]) / scale.range[k]);
-    let scaled: Vec<ByObjective> = plans.iter().map(|timing| scaled(&timing.objectives)).collect();
-    let mut loss = vec![0.0; plans.len()];
-    for weights in das_dennis(count, WEIGHTS).unwrap_or_default().chunks_exact(count) {
-        let sum = |i: usize| -> f64 { scaled[i].plan().iter().zip(weights).map(|(f, w)| f * w).sum() };
-        let mut order: Vec<usize> = (0..plans.len()).collect();
-        order.sort_by(|&a, &b| sum(a).total_cmp(&sum(b)));
-        if let [best, second, ..] = order[..] {
-            loss[best] += sum(second) - sum(best);
-        }
-    }
-    let most = (0..plans.len()).max_by(|&a, &b| loss[a].total_cmp(&loss[b]).then(b.cmp(&a)))?;
-    Some(plans[most])
 }
 
 #[cfg(test)]

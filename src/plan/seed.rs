@@ -27,6 +27,10 @@ const FASTEST: u64 = 8;
 const DESCENTS: u64 = 22;
 const ENDS: u64 = 3;
 const BETWEEN: u64 = 16;
+/// Intervals from which on the descents to the fastest plan get up to so many steps, of half of the budget at most.
+const MANY: usize = 24;
+const MOST_STEPS: u64 = 200;
+const HALF: u64 = 50;
 /// Steps that a descent on a curve is worth starting with; the fewest durations of a curve.
 const STEPS: u64 = 2;
 const FEWEST: usize = 3;
@@ -51,7 +55,9 @@ pub(super) fn seeds(setup: &Setup, budget: u64) -> Seeds {
     let step = setup.interval_count() as u64 + 2;
     let mut seeds = Seeds::default();
     let mut evaluator = Evaluator::new(setup);
-    let Some(fastest) = seeds.fastest(setup, &mut evaluator, share(FASTEST)) else { return seeds };
+    // A step of a descent takes an evaluation an interval: of many, the share of few is no descent.
+    let steps = if setup.interval_count() > MANY { (MOST_STEPS * step).min(share(HALF)) } else { 0 };
+    let Some(fastest) = seeds.fastest(setup, &mut evaluator, share(FASTEST).max(steps)) else { return seeds };
     let mut durations_s = durations(setup, &fastest);
     let few = |durations: usize| share(DESCENTS) < STEPS * step * (CURVES.len() * durations) as u64;
     while durations_s.len() > FEWEST && few(durations_s.len()) {

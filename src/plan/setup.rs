@@ -115,6 +115,11 @@ impl Setup {
             7 => Degree::Septic,
             _ => Degree::Sextic,
         };
+        let poses = poses(task, &rests).into_iter().enumerate().map(|(point, pose)| {
+            // What the arm comes near enough to is kept as it comes there.
+            pose.map(|pose| arm.chain.pose_beside(pose, points.of(point)))
+        });
+        let poses = poses.collect();
         let t_s = arrivals(&vec![nominal_s; dwell_before_s.len()], &dwell_before_s);
         let template = Motion::new(degree, points, &ends, &dwells, &t_s)?;
         let payload_kg: Vec<f64> =
@@ -133,7 +138,7 @@ impl Setup {
             stops,
             range_ends,
             payload_kg,
-            poses: poses(task, &rests),
+            poses,
         })
     }
 

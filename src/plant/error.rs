@@ -36,7 +36,11 @@ pub enum PlantError {
         found: f64,
         expected: String,
     },
-    #[error("there is no plant {name:?}{}; there are {known}", suggestion(nearest.as_deref()))]
+    #[error(
+        "there is no {} {name:?}{}; there are {known}",
+        if name.ends_with(".toml") { "file" } else { "plant" },
+        suggestion(nearest.as_deref())
+    )]
     UnknownPreset { name: String, nearest: Option<String>, known: String },
     #[error(
         "the plant is for the joints {plant}, the arm has {arm}: give a plant file with these joints in this order; \

@@ -60,7 +60,10 @@ pub(crate) fn document(excited: &Excited, of_sample: bool, file: &Path) -> Docum
         excited.duration_s(),
         file.display()
     );
-    let what = format!("The joints move one after the other: {}.", strokes.join("; those that slide "));
+    let what = format!(
+        "The joints move one after the other, where their ranges have room: {}.",
+        strokes.join("; those that slide ")
+    );
     let home = units.heading("home", Dimension::Position);
     let numbers = ["sent from", "to", "allowed from", "to"].map(Column::numbers);
     let columns = [Column::words("joint"), Column::numbers(home)].into_iter().chain(numbers);
@@ -78,7 +81,7 @@ pub(crate) fn document(excited: &Excited, of_sample: bool, file: &Path) -> Docum
         .collect();
     let short = (!short.is_empty()).then(|| {
         Sentence::finding(format!(
-            "The range of {} is too near for some: these strokes go to one side only, the fastest twice as far, or no farther than it allows.",
+            "The range of {} is too short for some: these go to one side only, the fastest twice as far, or no farther than it allows; the table has what is sent.",
             short.join(", ")
         ))
     });

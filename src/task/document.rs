@@ -42,7 +42,7 @@ pub(super) struct Document {
     #[cfg_attr(test, schemars(with = "Option<Vec<f64>>"))]
     pub(super) times_s: Option<Spanned<Vec<f64>>>,
     /// Key points, at least two.
-    #[cfg_attr(test, schemars(with = "Vec<Point>"))]
+    #[cfg_attr(test, schemars(with = "Vec<Point>", length(min = 2)))]
     #[serde(rename = "point")]
     pub(super) points: Vec<Spanned<Point>>,
     /// State in which the plan starts; at rest unless given.
@@ -58,6 +58,7 @@ pub(super) struct Document {
     pub(super) objectives: BTreeMap<String, Spanned<f64>>,
     /// How the objectives weigh against each other, each scaled by its range over the front; not negative, not all
     /// zero; zero for those left out.
+    #[serde(default)]
     #[cfg_attr(test, schemars(schema_with = "weights"))]
     pub(super) weights: Option<Spanned<BTreeMap<String, Spanned<f64>>>>,
 }

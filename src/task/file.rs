@@ -71,7 +71,8 @@ fn parse(text: &str) -> Result<Task, TaskError> {
     let points = file.points.iter().map(|point| reader.point(point)).collect::<Result<Vec<_>, _>>()?;
     if points.len() < 2 {
         let (key, why) = ("point".to_owned(), "a plan leads from one key point to another");
-        return Err(TaskError::Length { line: 1, key, found: points.len(), expected: 2, why });
+        let line = file.points.first().map_or(1, |point| line_of(text, &point.span()));
+        return Err(TaskError::Length { line, key, found: points.len(), expected: 2, why });
     }
     let times_s = file.times_s.as_ref().map(|times| reader.times(times, points.len())).transpose()?;
     let tool_speed = file.limits.tool_speed_m_s.as_ref();

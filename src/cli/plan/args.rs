@@ -181,7 +181,7 @@ fn rules() -> impl TypedValueParser<Value = Rule> {
     let said = |rule: Rule| match rule {
         Rule::Weights => "Least weighted sum, equal weights if there are none".to_owned(),
         Rule::Ideal => "Nearest to the best of every objective".to_owned(),
-        Rule::Knee => "Where giving up a little costs most".to_owned(),
+        Rule::Knee => "Where the front bulges most: least sum, whatever the weights".to_owned(),
         Rule::Best(objective) => format!("Least {}", objective.row().name),
     };
     PossibleValuesParser::new(Rule::all().map(|rule| PossibleValue::new(rule.name()).help(said(rule))))

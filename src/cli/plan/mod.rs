@@ -80,11 +80,12 @@ impl Args {
         let title = &request.task.title;
         let evaluation = PlanEvaluation::of(&request.setup, times_s).map_err(PlanFailure::from)?;
         let joints = request.setup.joint_names();
-        let document = PlanDocument::evaluated(title, &joints, &evaluation, true);
+        let above = request.above(&evaluation);
+        let keeps = above.is_empty() && evaluation.broken().is_empty();
+        let document = PlanDocument::evaluated(title, &joints, &evaluation, keeps);
         self.write_log(request, &document, BTreeMap::new())?;
         let course = Course::of(request, &evaluation)?;
         let remarks = request.doubts(&evaluation).map_err(PlanFailure::from)?;
-        let above = request.above(&evaluation);
         let result = match target.form {
             Form::Json => document.json(),
             Form::Html => {

@@ -234,8 +234,6 @@ fn a_shape_follows_the_rule_that_chose_under_all_its_ceilings() {
     let asked = [
         (Rule::Weights, Ceilings::NONE, 0.02),
         (Rule::Ideal, Ceilings::NONE, 0.02),
-        // At the knee the least gain counts: that of time.
-        (Rule::Knee, Ceilings::NONE, -1e-6),
         (Rule::Best(Objective::Duration), smooth, 0.04),
         (Rule::Best(Objective::RmsPower), slow, 0.05),
         (Rule::Best(Objective::RmsJerk), powered, 0.1),

@@ -24,9 +24,10 @@ pub(super) fn degrees(compared: bool, planned: &Planned) -> Option<Section> {
     said.push(Sentence::finding(match best {
         Some((degree, better)) => format!(
             "By the rule degree {degree} is better by {:.1} %: `degree = {degree}` in the task takes it. Its derivatives \
-             are continuous up to that of order {}.",
+             are continuous up to that of order {}{}.",
             100.0 * better,
-            degree - 1
+            degree - 1,
+            if degree < 6 { " in motion; where it leaves rest and comes to it, its jerk steps" } else { "" }
         ),
         None => format!("By the rule no other degree is better than {own} by more than 1 %."),
     }));

@@ -174,7 +174,7 @@ fn reason(ceilings: &Ceilings, planned: &Planned) -> String {
         }
         Rule::Ideal => "Nearest to the best values of all objectives, each scaled by its range".into(),
         Rule::Knee => {
-            "The knee of the front: from here a small gain in one objective costs most in another".into()
+            "The knee of the front, where it bulges most: smallest sum of the objectives, each scaled by its range".into()
         }
         Rule::Best(objective) => format!("The plan of least {}", objective.row().name),
     };

@@ -33,7 +33,7 @@ pub struct PlanDocument {
     /// Those of them that slide: of these read m for rad, N for N m; left out where all turn.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sliding_joints: Vec<String>,
-    /// Whether a plan keeps all limits and ceilings; if not, the exit code is 1.
+    /// Whether the chosen plan keeps all limits and ceilings.
     #[serde(default)]
     pub feasible: bool,
     /// Evolutionary algorithm; null where a plan was only evaluated.
@@ -81,7 +81,7 @@ pub struct PlanDocument {
 pub struct DegreeEntry {
     /// Degree of the spline: 5, 6 or 7.
     pub degree: u8,
-    /// By what share it is better than the chosen plan by the rule, at the knee in every objective; negative if it is worse.
+    /// By what share it is better than the chosen plan by the rule; negative if it is worse.
     pub better_by_rule: f64,
     /// The plan.
     #[serde(flatten)]

@@ -154,6 +154,10 @@ fn a_pose_out_of_reach_or_out_of_the_plane_says_by_how_much() {
     let beside = Pose::from_parts(Translation3::new(0.0, 0.25, 0.0), Rotation3::identity()) * there;
     let Err(ArmError::Unreachable { distance_m, angle_rad }) = chain.reach(&beside, &near) else { panic!() };
     assert!((distance_m - 0.25).abs() < 1e-3 && angle_rad < 1e-3, "{distance_m} {angle_rad}");
+    // An angle that the description rounds is no miss.
+    let rounded = Pose::from_parts(Translation3::new(0.0, 4e-7, 0.0), Rotation3::identity()) * there;
+    let posture = chain.reach(&rounded, &near).unwrap();
+    assert!(chain.is_at(&rounded, &posture, 1e-6), "{posture:?}");
     let far = Pose::from_parts(Translation3::new(9.0, 0.0, 0.0), there.rotation);
     let message = chain.reach(&far, &near).unwrap_err().to_string();
     assert!(message.starts_with("the tool pose is out of reach by "), "{message}");

@@ -42,6 +42,7 @@ fn a_given_plan_is_judged_with_exit_code_0_if_it_keeps_its_limits_and_4_if_not()
     let broken = plan(&[SIMULATION, "--times", C, "--json"], "2");
     assert_eq!(broken.status.code(), Some(4));
     let document = json(&broken);
+    assert_eq!((&document["feasible"], document["front"].as_array().map(Vec::len)), (&false.into(), Some(0)));
     let margins = document["chosen"]["margins"].as_array().unwrap();
     let range = margins.iter().find(|m| m["joint"] == "J3" && m["limit"] == "position").unwrap();
     assert!(range["share"].as_f64().unwrap() > 1.4 && range["t_s"].as_f64().unwrap() > 7.0, "{range}");
