@@ -42,6 +42,9 @@ const FADES_S: f64 = 0.3;
 pub struct Chance {
     /// When the motion begins, from the plan's first sample, s.
     pub from_s: f64,
+    /// When the next one does, or the plan ends, s.
+    #[serde(default)]
+    pub to_s: f64,
     /// What the model did not explain in it, at most, rad.
     pub peak_rad: f64,
     /// The same of the joint's other motions, rad.
@@ -106,6 +109,7 @@ fn in_run(left: &[Vec<f64>], k: usize, planned: &[(f64, f64)]) -> Option<(Range<
     let usual = |size: &dyn Fn(&Motion) -> f64| others().map(size).fold(0.0, f64::max);
     let made = Chance {
         from_s: worst.steps.start as f64 * STEP_S,
+        to_s: worst.steps.end as f64 * STEP_S,
         peak_rad: worst.peak_rad,
         usual_rad: usual(&|motion| motion.peak_rad),
     };

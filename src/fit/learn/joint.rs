@@ -287,7 +287,8 @@ impl<'a> Joint<'a> {
             let apart = sent[k].iter().zip(&sent[from]).map(|(a, b)| a - b);
             largest(&apart.collect::<Vec<f64>>()) < AGAIN * largest(&sent[from])
         };
-        let is_first = (0..answers.len()).all(|k| none(&k) || again(k));
+        let failed = |k: usize| grown(rms_rad[k], rms_rad[from]);
+        let is_first = (0..answers.len()).all(|k| none(&k) || again(k) || failed(k));
         let plain = (0..from).rev().find(none);
         if let Some(plain) = plain.filter(|_| is_first && manner.character != Character::Hunts) {
             // What no error tells, such as the step over a dead band, is in the whole of a first correction alone.
@@ -327,7 +328,7 @@ fn grown(now_rad: f64, best_rad: f64) -> bool {
 }
 
 /// The run to go on from, and what is left of trust in a step: half for each run that grew the error by another command, and twice for
-/// each that did not.
+/// each that did not. The same sent again tells nothing of a step.
 fn trusted(rms_rad: &[f64], sent: &[Vec<f64>]) -> (usize, f64) {
     let (mut best, mut trust) = (0, 1.0_f64);
     let again = |k: usize, best: usize| {
@@ -335,10 +336,8 @@ fn trusted(rms_rad: &[f64], sent: &[Vec<f64>]) -> (usize, f64) {
         apart < (AGAIN * largest(&sent[best])).max(AGAIN * TOLD_RAD)
     };
     for (k, now) in rms_rad.iter().enumerate().skip(1) {
-        if !grown(*now, rms_rad[best]) {
-            trust = (2.0 * trust).min(1.0);
-        } else if !again(k, best) {
-            trust *= 0.5;
+        if !again(k, best) {
+            trust = if grown(*now, rms_rad[best]) { 0.5 * trust } else { (2.0 * trust).min(1.0) };
         }
         if *now < rms_rad[best] {
             best = k;
@@ -377,5 +376,7 @@ mod tests {
         let grew = [1.0, 0.5, 0.7, 0.8];
         assert_eq!(trusted(&rad(&grew), &sent(&[0.0, 0.5, 1.0, 1.4])), (1, 0.25));
         assert_eq!(trusted(&rad(&[1.0, 0.5, 0.7, 0.4]), &sent(&[0.0, 0.5, 1.0, 0.6])), (3, 1.0));
+        // Sent back after it grew the error, and as before: half a step is next.
+        assert_eq!(trusted(&rad(&[1.0, 0.5, 0.7, 0.5]), &sent(&[0.0, 0.5, 1.0, 0.5])), (3, 0.5));
     }
 }

@@ -14,6 +14,9 @@ const GREW: (f64, f64) = (0.2, 0.1 * DEGREE_RAD);
 /// An error that is above this share of another is none the smaller for it.
 const GAINED: f64 = 0.95;
 
+/// One that is above another by this factor is no longer the same.
+const FAR: f64 = 1.3;
+
 /// Errors up to this times the least are as good.
 const AS_GOOD: f64 = 1.1;
 
@@ -59,8 +62,11 @@ fn of_stretch(sent: &[Vec<f64>], errors: &[Vec<f64>], steps: Range<usize>) -> Op
             |other: usize| left[other].rms_rad > GAINED * left[k].rms_rad || left[other].tops(&left[k]);
         // A larger one before it was for another machine, as one that was cold.
         let same = |other: usize| !corrected(k) || other > k && alike(k, other);
-        let more = (0..sizes.len()).filter(|&other| grew(other, k) && gained_nothing(other) && same(other));
-        more.map(|other| sizes[other] - sizes[k]).reduce(f64::max)
+        let more =
+            || (0..sizes.len()).filter(|&other| grew(other, k) && gained_nothing(other) && same(other));
+        // A limit leaves as much; of what came to far more one run may be a bad day's.
+        let held = more().any(|other| left[other].rms_rad < FAR * left[k].rms_rad) || more().count() > 1;
+        more().map(|other| sizes[other] - sizes[k]).filter(|_| held || !corrected(k)).reduce(f64::max)
     };
     let spoils = |k: usize| {
         // One correction may be mended by the next.
@@ -111,6 +117,11 @@ mod tests {
         assert_eq!(found(&[[0.0; 2], [2.0; 2], [4.0; 2]], &[[3.0; 2], [0.08; 2], [0.08; 2]]), []);
         // The correction is the same.
         assert_eq!(found(&[[0.0; 2], [2.0; 2], [2.1; 2]], &[[3.0; 2], [1.0; 2], [1.0; 2]]), []);
+        // One run in which it came to far more tells of no limit, two do.
+        assert_eq!(found(&[[0.0; 2], [2.0; 2], [3.0; 2]], &[[3.0; 2], [1.0; 2], [1.5; 2]]), []);
+        let twice =
+            found(&[[0.0; 2], [2.0; 2], [3.0; 2], [2.6; 2]], &[[3.0; 2], [1.0; 2], [1.5; 2], [1.4; 2]]);
+        assert!(twice.len() == 2 && twice.iter().all(|held| held.from == 1), "{twice:?}");
         // A first correction that gained nothing has no smaller one beside it; one that spoils is none the better for that.
         assert_eq!(found(&[[0.0; 2], [2.0; 2]], &[[3.0; 2], [3.0; 2]]), []);
         let spoilt = found(&[[0.0; 2], [2.0; 2], [3.0; 2]], &[[3.0; 2], [3.1, 2.0], [3.3, 1.0]]);

@@ -137,9 +137,15 @@ pub(super) fn runs(replanned: &Replanned) -> Option<Section> {
             if run.corrected { "corrected" } else { "the plan" }.to_owned(),
             optional(run.promised.map(|promised| promised.mean_peak_rad), shown),
             optional(run.promised.map(|promised| promised.mean_peak_margin_rad), shown),
-            optional(run.mean_peak_rad, shown),
+            match run.mean_peak_as_it_came_rad {
+                Some(came_rad) => format!("{} ({})", optional(run.mean_peak_rad, shown), shown(came_rad)),
+                None => optional(run.mean_peak_rad, shown),
+            },
         ]
     };
+    let alone = runs.iter().any(|run| run.mean_peak_as_it_came_rad.is_some()).then(|| {
+        Sentence::note("In brackets with a start that came so in that run alone, and counts as the next largest of its joint.")
+    });
     let columns =
         ["promised", "90 % below", "measured"].map(|heading| Column::numbers(units.mean_heading(heading)));
     let columns = ["run", "sent"].map(Column::words).into_iter().chain(columns);
@@ -152,6 +158,7 @@ pub(super) fn runs(replanned: &Replanned) -> Option<Section> {
         .with(Sentence::note(
             "Mean peak error of starts and reversals: what its command promised, and what came.",
         ))
+        .with_all(alone)
         .with_all(distrust(replanned).map(Sentence::Finding)),
     )
 }

@@ -1,8 +1,8 @@
 //! Plans with their commands and what is expected of them, and which is sent.
 
 use super::{
-    Commanded, Decision, Inputs, JointCommand, Predicted, ReplanFailure, Response, command::commanded,
-    history::History, last::Last, promised, subject::Subject, warp::Warp,
+    Commanded, Decision, Inputs, JointCommand, OfRuns, Predicted, ReplanFailure, Response,
+    command::commanded, history::History, last::Last, promised, subject::Subject, warp::Warp,
 };
 use crate::{
     fit::{Fit, Learning, Step, TRAVELS_RAD, Trial},
@@ -155,9 +155,14 @@ impl Maker<'_> {
         let times = (0..trials.len()).filter(|k| kept && history.same(*k, newest)).count();
         let base = trials.get(newest).map(|trial| (trial.sent, trial.measured, times));
         let joints = || command.iter().flat_map(|command| &command.joints);
-        let learnt = |name: &str| {
-            joints().find(|joint| joint.name == name).map_or((None, None), |one| (one.spread_rad, one.held))
+        // What came by chance came in the newest run.
+        let newest = newest + 1 == trials.len();
+        let of = |one: &JointCommand| OfRuns {
+            spread_rad: one.spread_rad,
+            held: one.held,
+            by_chance: one.by_chance.filter(|_| newest),
         };
+        let learnt = |name: &str| joints().find(|joint| joint.name == name).map_or_else(OfRuns::default, of);
         let (predicted, responses) = promised(fit, &plan, sent, base, learnt, &inputs.rules)?;
         let predicted = if kept { predicted.unsteady(history.unsteady_rad()) } else { predicted };
         Ok(Candidate { new, plan, points_hz, command, predicted, responses })

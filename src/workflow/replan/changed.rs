@@ -2,10 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use super::history::{History, PastRun};
+use super::history::History;
 use crate::{
     fit::{Fit, JointFit, predict},
-    remark::{Code, Remarks},
     series::{Series, Track},
     units::DEGREE_RAD,
 };
@@ -30,7 +29,7 @@ const BROKEN: f64 = 2.0;
 pub(super) type Fits<'a> = &'a mut dyn FnMut(&[usize]) -> Option<Fit>;
 
 /// What tells of a change.
-enum Sign {
+pub(super) enum Sign {
     /// The same was sent in an earlier run (by index); the runs from another one on are of the machine as it is now.
     Pair(usize, usize),
     /// The same was sent in an earlier run (by index), and more came than was promised: what is sent stays a guide, older runs do not.
@@ -58,7 +57,7 @@ impl History {
     pub(super) fn without_another_machine(&mut self, fits: Fits) -> (BTreeSet<usize>, Option<String>) {
         let mut now = Era { runs: (0..self.runs.len().min(1)).collect(), ..Era::default() };
         let mut before: Vec<Era> = Vec::new();
-        let mut said = None;
+        let (mut said, mut foreign) = (None, Vec::new());
         for run in 1..self.runs.len() {
             if let Some(k) = self.returned(&before, &now, run, fits) {
                 let (returns, swings_rad) = (now.returns + 1, now.swings_rad.max(now.unsteady_rad));
@@ -74,12 +73,23 @@ impl History {
                 now.runs.retain(|k| !passed.contains(k));
                 now.others.extend(passed.iter().map(|k| self.places[*k]));
                 now.runs.push(run);
+                foreign.push(run);
                 continue;
             }
             let Some(sign) = self.sign(&now.runs, run, fits) else {
                 now.runs.push(run);
                 continue;
             };
+            if let Sign::Pair(before, _) = sign
+                && self.was_exception(before, run)
+            {
+                let passed = BTreeSet::from([before]);
+                said = Some(self.said_of_return(run, &passed));
+                now.runs.retain(|k| *k != before);
+                now.others.insert(self.places[before]);
+                now.runs.push(run);
+                continue;
+            }
             said = Some(self.said(run, &sign));
             self.drifts = matches!(sign, Sign::Drift(_));
             let from = match sign {
@@ -104,6 +114,8 @@ impl History {
         let stays = |k: usize| now.runs.contains(&k);
         (self.changes, self.unsteady_rad) = (now.changes, now.unsteady_rad);
         self.undone_rad = self.undone(&now.runs);
+        self.foreign =
+            (now.runs.iter().enumerate()).filter(|(_, run)| foreign.contains(*run)).map(|(k, _)| k).collect();
         retain(&mut self.runs, stays);
         retain(&mut self.series, stays);
         retain(&mut self.places, stays);
@@ -145,6 +157,15 @@ impl History {
         let found: Vec<(bool, bool)> = self.series[run].1.tracks.iter().filter_map(of_joint).collect();
         let back = found.iter().any(|(back, _)| *back) && found.iter().all(|(_, other)| !other);
         back.then_some(last)
+    }
+
+    /// Whether of two runs in which the same was sent the second came as was promised of the first, which broke that: what came in the
+    /// first is no machine.
+    fn was_exception(&self, before: usize, run: usize) -> bool {
+        let most_rad = self.runs[before].promised.map(|promised| promised.mean_peak_margin_rad);
+        let [first_rad, second_rad] = [before, run].map(|k| self.peak_rad(k));
+        let kept = |rad: Option<f64>| rad.zip(most_rad).is_some_and(|(rad, most_rad)| rad <= most_rad);
+        before + 1 == run && most_rad.is_some() && !kept(first_rad) && kept(second_rad)
     }
 
     fn peak_rad(&self, run: usize) -> Option<f64> {
@@ -243,67 +264,6 @@ impl History {
         };
         let all = self.series.get(run)?.1.tracks.iter().filter_map(joint);
         Some(all.max_by(|a, b| a.0.total_cmp(&b.0))?.1)
-    }
-
-    /// What is to be said of a machine that changed, and of one that goes on to.
-    pub(super) fn remark_changes(&self, changed: Option<String>, remarks: &mut Remarks) {
-        let again = (changed.is_some() && self.changes > 1).then(|| {
-            let message = format!(
-                "the machine changed {} times between these runs, by up to {} of mean peak error: it may again, so half of \
-                 the usual step is taken, and more error is expected",
-                self.changes,
-                self.kind.says(self.unsteady_rad)
-            );
-            (self.changes, message)
-        });
-        for (count, message) in changed.map(|message| (1, message)).into_iter().chain(again) {
-            remarks.add(Code::MachineChanged, count as u64, message);
-        }
-    }
-
-    fn said_of_return(&self, run: usize, passed: &BTreeSet<usize>) -> String {
-        let logs: Vec<&str> = passed.iter().map(|k| self.runs[*k].log.as_str()).collect();
-        format!(
-            "the machine had changed for a time and moves in {} as before: what came meanwhile, in {}, is left out",
-            self.runs[run].log,
-            logs.join(", ")
-        )
-    }
-
-    fn said(&self, run: usize, sign: &Sign) -> String {
-        let of = |run: &PastRun| {
-            format!("{} in {}", self.kind.says(run.mean_peak_rad.unwrap_or_default()), run.log)
-        };
-        let log = |k: usize| &self.runs[k].log;
-        match sign {
-            Sign::Pair(before, from) => format!(
-                "the same was sent twice and gave a mean peak error of {}, then of {}: the machine has changed in between, and \
-                 logs before {} are left out",
-                of(&self.runs[*before]),
-                of(&self.runs[run]),
-                log(*from)
-            ),
-            Sign::Drift(before) => format!(
-                "the same was sent twice and gave a mean peak error of {}, then of {}, more than nine runs of ten should have: \
-                 the machine drifts, and the next command goes on from that run alone",
-                of(&self.runs[*before]),
-                of(&self.runs[run]),
-            ),
-            Sign::Model { joint, missed_rad, own_rad, before_rad } => {
-                let own = self.series[run].1.track(joint).map_or(self.kind, Track::kind);
-                format!(
-                    "{joint} moved otherwise in {} than runs before it have it: the model of those misses it by {} (root mean square), \
-                     where it missed {} by {} and one of this run alone misses it by {}; the machine has changed, and logs up to {} \
-                     are left out",
-                    log(run),
-                    own.says(*missed_rad),
-                    log(run - 1),
-                    own.says(*before_rad),
-                    own.says(*own_rad),
-                    log(run - 1)
-                )
-            }
-        }
     }
 }
 

@@ -13,8 +13,8 @@ const NEARLY: f64 = 1.05;
 const WORSE: f64 = 1.1;
 const WORSE_AGAIN: f64 = 1.25;
 
-/// A correction that came to more than the best before it by this factor met something else than too large a step.
-const FAR: f64 = 2.0;
+/// A correction that came to more than the best before it by this factor took too large a step, or met what was there that day alone.
+const MORE: f64 = 1.1;
 
 /// So many corrections that gained nothing are enough, and so many that gained less than a tenth together.
 const FAILURES: usize = 2;
@@ -139,7 +139,7 @@ impl History {
     /// other correction.
     fn commands(&self) -> Vec<(usize, f64)> {
         let mut commands: Vec<(usize, f64)> = Vec::new();
-        for (k, peak_rad) in self.peaks_rad() {
+        for (k, peak_rad) in self.peaks_rad().into_iter().filter(|(k, _)| !self.foreign.contains(k)) {
             match commands.iter_mut().find(|(other, _)| self.same(*other, k)) {
                 Some(command) => *command = (k, peak_rad),
                 None => commands.push((k, peak_rad)),
@@ -171,8 +171,8 @@ impl History {
             let newest = commands.split_last().filter(|(_, before)| before.len() > 1);
             let by = newest.and_then(|((newest, rad), before)| Some((*newest, rad / best(before)?.1)));
             let gained_little = by.is_some_and(|(newest, by)| {
-                // What came to far more was no step too many, and it is no end where the best came to as little as before since.
-                let passed = by > FAR && newest < last && self.failures(&commands) < FAILURES;
+                // Where the best came to as little as before since, a smaller step is worth a try.
+                let passed = by > MORE && newest < last && self.failures(&commands) < SEVERAL;
                 by >= WORTH && !passed
             });
             (gained_little && !self.follows).then_some(KeepReason::GainedLittle)

@@ -71,6 +71,13 @@ pub enum ReplanFailure {
         "no joint is predicted well enough for a command: the best held-out R2 is {best:.2}, {least} is needed; {why}"
     )]
     Unpredictable { best: f64, least: f64, why: Unclear },
+    #[error(
+        "the plan in {} is that of {other} and a correction of what that run was off by: it seems to be what was sent, and the arm is to \
+         follow the plan behind it; one more correction would lead farther away from that. `hydrotrace join LOG --plan next.mcap -o with-plan.mcap` \
+         puts the plan into the log, from the file that replan wrote for that run; if it is a plan of its own, give its log alone",
+        path.display()
+    )]
+    SentAsPlan { path: PathBuf, other: String },
     #[error("{}: {why}. No command is made from such a run; leave it out if there are others", path.display())]
     Spoilt { path: PathBuf, why: String },
     /// A plan that ends in the middle of the motion that another log has.

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{ReplanFailure, peaks};
+use super::{ReplanFailure, held::Held, peaks};
 use crate::{
     fit::{AFTER_S, Trial},
     log::Recording,
     math::quantile,
     replay::Rules,
-    series::{JointKind, Series, Track, bridged, moves_beside_s, moving_s},
+    series::{JointKind, Series, Track, bridged, moving_s},
     units::DEGREE_RAD,
     workflow::{
         carried::{Carried, Promise, rest::PLAN_LEAD_S},
@@ -39,6 +39,9 @@ const GOES_ON: f64 = 0.7;
 /// A run whose mean peak is not below this share of the best before it was not worth its correction.
 pub(super) const WORTH: f64 = 0.9;
 
+/// A log that ends by more before the last motion of its plan does is cut off, s: what slowly comes to rest is seen to be there sooner.
+const CUT_OFF_S: f64 = 0.3;
+
 /// Share of the usual gain that is left however much a command broke its promise.
 const LEAST_TRUST: f64 = 0.5;
 
@@ -56,6 +59,9 @@ pub struct PastRun {
     /// Mean peak error of its starts and reversals, rad; null without any. One that stands alone, in its joint and among the runs, counts
     /// as the next largest of its joint.
     pub mean_peak_rad: Option<f64>,
+    /// The same with it as it came, as a report has it, rad; null where none stands alone.
+    #[serde(default)]
+    pub mean_peak_as_it_came_rad: Option<f64>,
     /// Root mean square error over all joints, the whole plan and what all logs have of four seconds after it, rad.
     #[serde(default)]
     pub rms_error_rad: f64,
@@ -79,12 +85,16 @@ pub(super) struct History {
     pub(super) runs: Vec<PastRun>,
     /// Logs of other plans, of which the machine is learnt alone.
     pub(super) others: Vec<String>,
+    /// Logs that end before their plan does, and by how much, s: of their error nothing is learnt.
+    pub(super) cut_off: Vec<(String, f64)>,
     /// How often runs were left out because the machine changed.
     pub(super) changes: usize,
     /// Whether the first of these runs is left because what was sent in it, as before, came to more.
     pub(super) drifts: bool,
     /// Whether it goes on changing one way: what was sent before the newest run is no guide.
     pub(super) follows: bool,
+    /// Runs whose command was made for the machine as it was for a time: of a correction they say nothing.
+    pub(super) foreign: Vec<usize>,
     /// Mean peak that the command of the newest run gave before, where that run undid all that it gained, rad.
     pub(super) undone_rad: Option<f64>,
     /// In whose unit means over the joints are told.
@@ -119,6 +129,14 @@ impl History {
                 history.others.extend((!Carried::identifies(recording)).then(|| log.clone()));
                 continue;
             };
+            let motion_s = end_s - rest_s;
+            let ends_s = [&recording.planned, &recording.measured]
+                .map(|side| side.span_s().map_or(0.0, |span_s| span_s[1]));
+            let seen_to_s = ends_s[0].min(ends_s[1]) - starts_s;
+            if place + 1 < recordings.len() && seen_to_s < motion_s - CUT_OFF_S {
+                history.cut_off.push((log.clone(), motion_s - seen_to_s));
+                continue;
+            }
             held.extend(Held::of(log, &recording.planned, plan, starts_s));
             let rests_s = rests_s(&recording.planned, plan, starts_s + end_s);
             let seen = recording.measured.tracks.iter().filter_map(|track| track.t_s().last());
@@ -155,6 +173,7 @@ impl History {
                 path: paths[place].clone(),
                 corrected,
                 mean_peak_rad: None,
+                mean_peak_as_it_came_rad: None,
                 rms_error_rad: 0.0,
                 p95_error_rad: 0.0,
                 after_s: (rest_s + rests_s.min(seen_s)).max(0.0),
@@ -171,6 +190,8 @@ impl History {
         for (k, run) in history.runs.iter_mut().enumerate() {
             let others = of_runs.iter().enumerate().filter(|(other, _)| *other != k);
             run.mean_peak_rad = of_runs[k].usual_mean(&others.map(|(_, peaks)| peaks).collect::<Vec<_>>());
+            let came_rad = of_runs[k].usual_mean(&[]);
+            run.mean_peak_as_it_came_rad = came_rad.filter(|_| came_rad > run.mean_peak_rad);
         }
         // Only what all logs have can be compared.
         for (run, (_, measured)) in history.runs.iter_mut().zip(&mut history.series) {
@@ -178,6 +199,12 @@ impl History {
             [run.rms_error_rad, run.p95_error_rad] = errors_rad(measured, plan);
         }
         Ok(history)
+    }
+
+    /// A mean over the joints in words; of joints that turn and joints that slide it has no unit.
+    pub(super) fn says(&self, mean: f64) -> String {
+        let mixed = self.plan.tracks.iter().any(|track| track.kind() != self.kind);
+        if mixed { format!("{mean:.4} (rad, m)") } else { self.kind.says(mean) }
     }
 
     /// As the learning takes them.
@@ -310,33 +337,6 @@ fn rests_s(planned: &Series, plan: &Series, ended_s: f64) -> f64 {
     steps.take_while(|after_s| *after_s <= AFTER_S && holds(after_s)).last().unwrap_or(0.0)
 }
 
-/// What a log holds of its plan beside the motion that it shares with others, s from the start of that.
-struct Held {
-    log: String,
-    span_s: [f64; 2],
-    /// Motion before and after it.
-    moves_s: [Option<f64>; 2],
-}
-
-impl Held {
-    fn of(log: &str, planned: &Series, plan: &Series, starts_s: f64) -> Option<Self> {
-        let motion_s = moving_s(plan)?.map(|at_s| starts_s + at_s);
-        let span_s = planned.span_s()?.map(|at_s| at_s - starts_s);
-        let moves_s = moves_beside_s(planned, motion_s).map(|at_s| Some(at_s? - starts_s));
-        Some(Self { log: log.to_owned(), span_s, moves_s })
-    }
-
-    /// Whether it has ended, or had not begun, when the plan of another log moves on: whether its own would have nobody knows.
-    fn check(&self, other: &Self) -> Result<(), ReplanFailure> {
-        let [before_s, after_s] = other.moves_s;
-        let ends = after_s.is_some_and(|at_s| self.span_s[1] < at_s);
-        if ends || before_s.is_some_and(|at_s| self.span_s[0] > at_s) {
-            return Err(ReplanFailure::InRest { log: self.log.clone(), other: other.log.clone(), ends });
-        }
-        Ok(())
-    }
-}
-
 /// Root mean square over all joints of what a plan and what was measured of it differ by, and what that of every joint is below for
 /// 95 % of the time, rad; zero of nothing.
 fn errors_rad(measured: &Series, plan: &Series) -> [f64; 2] {
@@ -366,6 +366,7 @@ pub(super) mod tests {
             path: PathBuf::new(),
             corrected: k > 0,
             mean_peak_rad: Some(*peak),
+            mean_peak_as_it_came_rad: None,
             rms_error_rad: 0.5 * peak,
             p95_error_rad: *peak,
             after_s: AFTER_S,

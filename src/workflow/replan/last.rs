@@ -25,6 +25,11 @@ const AT_REST: f64 = 1e-3 * DEGREE_RAD;
 const MOST_CREEP_S: f64 = 10.0;
 const CREEP_STEP_S: f64 = 0.1;
 
+/// A joint that has left its rest by more creeps, rad or m, at the least; its rest is looked at over so many steps of so long, s.
+const CREPT: f64 = 1e-6 * DEGREE_RAD;
+const WAVERS: u32 = 20;
+const CREPT_STEP_S: f64 = 0.01;
+
 /// Instants at which a plan is looked at for key points, which it misses by so much at least, rad.
 const INSTANTS: u32 = 4000;
 const MISSES_RAD: f64 = 2.0 * DEGREE_RAD;
@@ -35,7 +40,7 @@ pub(super) struct Last {
     pub(super) plan: Series,
     /// When the times of the task's plan count from, s.
     pub(super) starts_s: Option<f64>,
-    /// From the first to the last motion, s.
+    /// From where it leaves its first rest to where it has come to its last, s.
     pub(super) duration_s: f64,
     /// The same, as instants of the log.
     pub(super) span_s: [f64; 2],
@@ -108,7 +113,7 @@ impl Last {
             plan: exact.map_or_else(|| cut(planned, near_s, to_s + COMMAND_TAIL_S), Ok)?,
             elsewhere,
             starts_s,
-            duration_s: to_s - from_s,
+            duration_s: took_s(planned, [from_s, to_s]),
             span_s: [from_s, to_s],
             request,
             times_s,
@@ -154,6 +159,25 @@ fn rests_s(planned: &Series, [from_s, to_s]: [f64; 2]) -> [f64; 2] {
         at_s
     };
     [walk(from_s, -CREEP_STEP_S, PLAN_LEAD_S), walk(to_s, CREEP_STEP_S, COMMAND_TAIL_S)]
+}
+
+/// How long a plan takes that is called motion between two instants, s: it leaves its rest, and comes to it, below the speed of one.
+fn took_s(planned: &Series, [from_s, to_s]: [f64; 2]) -> f64 {
+    let creeps_s = |from_s: f64, rest_s: f64| {
+        let by_s = CREPT_STEP_S.copysign(rest_s - from_s);
+        let apart = |track: &Track, k: u32, at_s: f64| {
+            (track.held_at(at_s + by_s * f64::from(k)).position - track.held_at(rest_s).position).abs()
+        };
+        // What a plan wavers by at rest is no motion.
+        let wavers = |track: &Track| (0..WAVERS).map(|k| apart(track, k, rest_s)).fold(0.0, f64::max);
+        let least: Vec<f64> = planned.tracks.iter().map(|track| CREPT + 4.0 * wavers(track)).collect();
+        let away = |k: &u32| {
+            planned.tracks.iter().zip(&least).any(|(track, least)| apart(track, *k, from_s) > *least)
+        };
+        let steps = (0_u32..).take_while(|k| (by_s * f64::from(*k)).abs() < (rest_s - from_s).abs());
+        steps.take_while(away).last().map_or(0.0, |k| CREPT_STEP_S * f64::from(k))
+    };
+    to_s - from_s + creeps_s(from_s, from_s - PLAN_LEAD_S) + creeps_s(to_s, to_s + COMMAND_TAIL_S)
 }
 
 /// How far a plan passes a key point of its task, rad or m.
@@ -248,6 +272,20 @@ fn trajectory_topic(planned: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_plan_takes_as_long_as_it_is_off_its_rests() {
+        // From 3 s to 23 s by 0.5 rad, at rest up to its jerk.
+        let at = |t_s: f64| {
+            let u = ((t_s - 3.0) / 20.0).clamp(0.0, 1.0);
+            0.5 * u.powi(4) * (35.0 - 84.0 * u + 70.0 * u * u - 20.0 * u.powi(3))
+        };
+        let plan = Series::sampled("J", 2600, at);
+        let called_s = moving_s(&plan).unwrap();
+        assert!(called_s[1] - called_s[0] < 18.8, "{called_s:?}");
+        let took_s = took_s(&plan, called_s);
+        assert!((19.6..=20.0).contains(&took_s), "{took_s}");
+    }
 
     #[test]
     fn trajectories_go_to_the_controller_that_the_plan_came_from() {

@@ -8,7 +8,8 @@ use crate::{
     log::Recording,
     math::deviation,
     remark::{Code, Remarks},
-    series::{Broken, Series, align, bridged},
+    replay::{Rules, replay},
+    series::{Broken, Series, Track, align, bridged},
     units::DEGREE_RAD,
     workflow::{
         carried::Carried,
@@ -26,8 +27,9 @@ const BEHIND_S: f64 = 0.5;
 const EARLY_S: f64 = 0.25;
 /// Plans whose motions differ by less, as a share, may be one.
 const ALIKE: f64 = 0.05;
-/// Plans that move less are not judged, rad: root mean square about the mean.
+/// Plans that move less are not judged, nor motions of one, rad: root mean square about the mean.
 const LEAST_RAD: f64 = 0.5 * DEGREE_RAD;
+const LEAST_OF_MOTION_RAD: f64 = DEGREE_RAD;
 
 /// What is said of the runs that are left out.
 pub(super) struct Useless {
@@ -51,7 +53,8 @@ pub(super) fn without_useless(
     unlike_others(&observed, &mut left, early);
     unlike_others(&observed, &mut left, out_of_time);
     let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
-    let dead = dead(&stay.iter().map(|k| &observed[*k]).collect::<Vec<_>>());
+    let sides = |k: &usize| [&observed[*k].planned, &observed[*k].measured];
+    let dead = dead(&stay.iter().map(sides).collect::<Vec<_>>());
     left.extend(dead.into_iter().map(|(place, why)| (stay[place], why)));
     let mut doubts = Remarks::default();
     for (place, (code, why)) in &left {
@@ -133,42 +136,101 @@ fn ahead_of_plan_s(run: &Recording, series: &Series) -> Option<f64> {
     Some(ahead_s(&of(series)?, &of(&run.planned)?))
 }
 
-/// Runs in which a joint stood that answers in another one, and, of those before the newest, in the newest.
-fn dead(observed: &[&Recording]) -> LeftOut {
-    let mut found = LeftOut::new();
-    let Some(newest) = observed.last() else { return found };
-    for track in &newest.planned.tracks {
-        let shares: Vec<Option<f64>> = observed.iter().map(|run| share(run, newest, track.name())).collect();
-        let answers = |share: &Option<f64>| share.is_some_and(|share| share > ANSWERS);
-        let stands = |share: &Option<f64>| share.is_some_and(|share| share < STANDS);
-        let (last, answering) = (shares.last(), shares.iter().filter(|share| answers(share)).count());
-        let why = || {
-            let why = format!("{} hardly moves in it although it does in other runs", track.name());
-            (Code::FrozenSensor, why)
-        };
-        if last.is_some_and(stands) && answering > 0 {
-            found.entry(observed.len() - 1).or_insert_with(why);
-        }
-        let known = last.is_some_and(answers) && answering > 1 || last.is_some_and(stands) && answering > 0;
-        if known {
-            for k in (0..shares.len()).filter(|k| stands(&shares[*k])) {
-                found.entry(k).or_insert_with(why);
+/// Runs in which a joint stood, or through one motion, that answers in another one, and, of those before the newest, in the newest.
+/// `runs`: what was planned and measured.
+fn dead(runs: &[[&Series; 2]]) -> LeftOut {
+    let mut found: BTreeMap<usize, BTreeMap<&str, (usize, String)>> = BTreeMap::new();
+    let Some((newest, _)) = runs.split_last() else { return LeftOut::new() };
+    let mut moving = 0;
+    for name in newest[0].tracks.iter().map(Track::name) {
+        let all: Vec<Vec<Moved>> = runs.iter().map(|run| moved(*run, name)).collect();
+        let Some(of_newest) = all.last() else { continue };
+        moving += usize::from(of_newest.first().is_some_and(|whole| whole.asked_rad > LEAST_RAD));
+        for place in 0..of_newest.len() {
+            let shares: Vec<Option<f64>> = all.iter().map(|own| share(own, of_newest, place)).collect();
+            for k in standing(&shares) {
+                let when = match place {
+                    0 => "in it".to_owned(),
+                    _ => format!("through its motion from {:.1} s on", all[k][place].from_s),
+                };
+                let why = format!("{name} hardly moves {when} although it does in other runs");
+                found.entry(k).or_default().entry(name).or_insert((place, why));
             }
         }
     }
-    found
+    // Where more than half of the joints stand through a motion, the machine did.
+    let one = |joints: &BTreeMap<&str, (usize, String)>| {
+        joints.values().any(|(place, _)| *place == 0) || 2 * joints.len() <= moving
+    };
+    let told = found.into_iter().filter(|(_, joints)| one(joints));
+    told.filter_map(|(k, joints)| Some((k, (Code::FrozenSensor, joints.into_values().next()?.1)))).collect()
 }
 
-/// How far a joint moves by how far its plan does, in a run of the same plan as another one's.
-fn share(run: &Recording, newest: &Recording, joint: &str) -> Option<f64> {
-    let [asked_rad, moved_rad] = motions_rad(run, joint)?;
-    let [newest_rad, _] = motions_rad(newest, joint)?;
-    let same = (asked_rad - newest_rad).abs() < ALIKE * newest_rad;
-    (same && asked_rad > LEAST_RAD).then_some(moved_rad / asked_rad)
+/// Of runs in which a joint moves by these shares of its plan those in which it stands though it could move.
+fn standing(shares: &[Option<f64>]) -> Vec<usize> {
+    let answers = |share: &Option<f64>| share.is_some_and(|share| share > ANSWERS);
+    let stands = |share: &Option<f64>| share.is_some_and(|share| share < STANDS);
+    let (last, answering) = (shares.last(), shares.iter().filter(|share| answers(share)).count());
+    let known = last.is_some_and(answers) && answering > 1 || last.is_some_and(stands) && answering > 0;
+    (0..shares.len()).filter(|k| known && stands(&shares[*k])).collect()
 }
 
-/// How far the plan of a joint moves and how far the joint, rad.
-fn motions_rad(run: &Recording, joint: &str) -> Option<[f64; 2]> {
-    let pair = align(run.planned.track(joint)?, run.measured.track(joint)?)?;
-    Some([&pair.planned, &pair.measured].map(|angles| deviation(angles)))
+/// How far the plan of a joint moves and how far the joint, rad, and where its motion begins, s.
+struct Moved {
+    asked_rad: f64,
+    moved_rad: f64,
+    from_s: f64,
+}
+
+/// How far a joint moves by how far its plan does, in a run of the same plan as another one's, and in the same motion.
+fn share(own: &[Moved], newest: &[Moved], place: usize) -> Option<f64> {
+    let (own, newest) = (own.get(place).filter(|_| own.len() == newest.len())?, newest.get(place)?);
+    let same = (own.asked_rad - newest.asked_rad).abs() < ALIKE * newest.asked_rad;
+    let least_rad = if place > 0 { LEAST_OF_MOTION_RAD } else { LEAST_RAD };
+    (same && own.asked_rad > least_rad).then_some(own.moved_rad / own.asked_rad)
+}
+
+/// Of a whole run first, then of each motion of the joint.
+fn moved(sides: [&Series; 2], joint: &str) -> Vec<Moved> {
+    let [Some(planned), Some(measured)] = sides.map(|side| side.track(joint)) else { return Vec::new() };
+    let Some(pair) = align(planned, measured) else { return Vec::new() };
+    let of = |[from_s, to_s]: [f64; 2]| {
+        let [from, to] = [from_s, to_s].map(|at_s| pair.t_s.partition_point(|t_s| *t_s < at_s));
+        let [asked_rad, moved_rad] =
+            [&pair.planned, &pair.measured].map(|angles| deviation(&angles[from..to]));
+        Moved { asked_rad, moved_rad, from_s }
+    };
+    let starts = replay(&[pair.clone()], &Rules::default()).transitions;
+    let windows = starts.iter().map(|start| start.window_s);
+    std::iter::once([f64::NEG_INFINITY, f64::INFINITY]).chain(windows).map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_motion_through_which_a_joint_stands_is_told_where_it_moves_in_another_run() {
+        let of = |shares: &[f64]| standing(&shares.iter().map(|share| Some(*share)).collect::<Vec<_>>());
+        assert_eq!(of(&[0.98, 1.0, 0.01]), [2], "in the newest");
+        assert_eq!(of(&[0.98, 0.01, 1.0]), [1], "in one before");
+        assert_eq!(of(&[0.01, 1.0]), Vec::<usize>::new(), "a correction may have moved it");
+        assert_eq!(of(&[0.01, 0.01]), Vec::<usize>::new(), "in all");
+        assert_eq!(of(&[0.98, 0.4, 0.9]), Vec::<usize>::new(), "it only lags");
+        let run = |came: &dyn Fn(f64) -> f64| {
+            let ramp = |t: f64, from_s: f64| (t - from_s).clamp(0.0, 2.0) * 0.1;
+            let both = |came: &dyn Fn(f64) -> f64| {
+                let of = |name: &str, came: &dyn Fn(f64) -> f64| {
+                    Track::sampled(name, 1400, |t| ramp(t, 2.0) + came(ramp(t, 7.0)))
+                };
+                Series { tracks: vec![of("boom", came), of("stick", &|q| q), of("slew", &|q| q)] }
+            };
+            let (planned, measured) = (both(&|q| q), both(came));
+            [planned, measured]
+        };
+        let (sound, stuck) = (run(&|q| q), run(&|_| 0.0));
+        let found = dead(&[sound.each_ref(), stuck.each_ref()]);
+        let [(1, (Code::FrozenSensor, why))] = &found.into_iter().collect::<Vec<_>>()[..] else { panic!() };
+        assert!(why.contains("boom hardly moves through its motion from 7.0 s on"), "{why}");
+    }
 }

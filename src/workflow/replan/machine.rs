@@ -51,11 +51,13 @@ pub(super) fn machine(
             _ => found,
         };
         let known: Vec<JointFit> = file.fit.joints.clone();
-        let fit = file.fit.held_against(&seen, left);
-        let both = || known.iter().zip(&fit.joints);
-        let limits = both().flat_map(|(known, held)| disproved(known, held, path));
-        for message in limits.chain(both().filter_map(|(known, held)| of_another(known, held, path))) {
-            doubts.add(Code::PoorFit, 1, message);
+        let mut fit = file.fit.held_against(&seen, left);
+        for (known, held) in known.iter().zip(&mut fit.joints) {
+            let other = of_another(known, held, path);
+            held.model_holds &= other.is_none();
+            for message in disproved(known, held, path).into_iter().chain(other) {
+                doubts.add(Code::PoorFit, 1, message);
+            }
         }
         return Ok((fit, file.logs, doubts));
     }

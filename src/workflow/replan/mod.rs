@@ -10,6 +10,7 @@ mod course;
 mod decision;
 mod document;
 mod failure;
+mod held;
 mod history;
 mod inputs;
 mod last;
@@ -25,8 +26,10 @@ mod peaks;
 mod points;
 mod predicted;
 mod retime;
+mod said_of_change;
 mod same_way;
 mod samples;
+mod sent_as_plan;
 mod shape;
 mod subject;
 mod unclear;
@@ -48,7 +51,7 @@ pub use history::PastRun;
 pub use inputs::Inputs;
 pub use limits::{HeldTo, Origin};
 pub use outcome::{Before, MeasuredPeaks, Replanned, Search};
-pub use predicted::{Predicted, PredictedTransition, Response, predicted, promised};
+pub use predicted::{OfRuns, Predicted, PredictedTransition, Response, predicted, promised};
 pub use unclear::Unclear;
 
 use super::fit;
@@ -93,10 +96,19 @@ pub fn run(
     if let Some(why) = uncorrectable(newest, &inputs.rules) {
         return Err(ReplanFailure::of(path, why));
     }
+    let names = told_apart(&inputs.logs);
     let last = Last::of(path, newest, inputs)?;
     inputs.check_bounds(&last.plan)?;
-    let names = told_apart(&inputs.logs);
     let mut history = History::of((&names, &inputs.logs), observed, &last.plan, &inputs.rules)?;
+    if let Some(other) = sent_as_plan::behind(&names, observed, &history.others)? {
+        return Err(ReplanFailure::SentAsPlan { path: path.clone(), other: other.to_owned() });
+    }
+    for (log, by_s) in &history.cut_off {
+        let message = format!(
+            "{log} ends {by_s:.1} s before its plan does: its machine is learnt, of its error nothing"
+        );
+        doubts.add(Code::Stopped, 1, message);
+    }
     parts::remark((&inputs.logs, &names), observed, &history.others, &mut doubts);
     let chosen = |places: &mut dyn Iterator<Item = usize>| -> (Vec<String>, Vec<&Recording>) {
         places.map(|k| (names[k].clone(), &observed[k])).unzip()

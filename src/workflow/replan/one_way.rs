@@ -54,9 +54,13 @@ impl History {
         {
             return None;
         }
-        let (now, then) = (self.off_rad(run, &|_| true), self.off_rad(*before, &|_| true));
         // As far back as corrections were made.
         let earlier = others.last().filter(|k| self.taught(**k, *before));
+        // What it was promised to leave is no sign of another machine.
+        if earlier.is_none() && self.kept_promise(*before) {
+            return None;
+        }
+        let (now, then) = (self.off_rad(run, &|_| true), self.off_rad(*before, &|_| true));
         if correlation(&now, &then) < AGREES
             || earlier.is_some_and(|k| correlation(&then, &self.off_rad(*k, &|_| true)) < AGREES)
         {
@@ -72,6 +76,13 @@ impl History {
         let (now, missed) = (self.off_rad(run, &told), self.missed(&older, run, &told));
         let share = square(&missed).sqrt() / square(&now).sqrt();
         (correlation(&missed, &now) >= AGREES && share >= MISSED).then_some(*before)
+    }
+
+    fn kept_promise(&self, run: usize) -> bool {
+        let run = &self.runs[run];
+        run.promised
+            .zip(run.mean_peak_rad)
+            .is_some_and(|(promised, rad)| rad <= promised.mean_peak_margin_rad)
     }
 
     /// Whether the next run was sent what a corrected one had taught.

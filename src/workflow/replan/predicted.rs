@@ -7,7 +7,7 @@ use super::{
     warp::unexplained,
 };
 use crate::{
-    fit::{Fit, FitError, Stop, predict},
+    fit::{Chance, Fit, FitError, Stop, predict},
     replay::{Kind, Rules, replay},
     series::{Pair, Series, Track, align},
 };
@@ -82,7 +82,28 @@ pub struct PredictedTransition {
 ///
 /// [`FitError`] for a plan longer than an hour.
 pub fn predicted(fit: &Fit, plan: &Series, sent: &Series, rules: &Rules) -> Result<Predicted, FitError> {
-    Ok(promised(fit, plan, sent, None, |_| (None, None), rules)?.0)
+    Ok(promised(fit, plan, sent, None, |_| OfRuns::default(), rules)?.0)
+}
+
+/// What runs tell of a joint beside its model.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct OfRuns {
+    /// What comes differently each time, rad.
+    pub spread_rad: Option<f64>,
+    /// Where it comes no farther.
+    pub held: Option<Stop>,
+    /// What came in the newest run alone.
+    pub by_chance: Option<Chance>,
+}
+
+/// What comes at an instant by what came before.
+enum Comes {
+    /// The same.
+    Again,
+    /// The same but for what the model says that changes.
+    Changed,
+    /// What the model says.
+    Otherwise,
 }
 
 /// How a joint is expected to answer.
@@ -112,7 +133,7 @@ const OF_CHANGE: [f64; 2] = [0.02, 0.03];
 const OF_CHANGE_AGAIN: [f64; 2] = [0.02, 0.06];
 
 /// The same with the responses behind it, from what was sent and what came in a run of this plan, if one is known, and how often
-/// that was sent: the model then tells only what changes. `learnt` gives what a joint did differently from run to run, rad, and where it is held.
+/// that was sent: the model then tells only what changes. `learnt` tells of each joint what those runs did.
 ///
 /// # Errors
 ///
@@ -122,7 +143,7 @@ pub fn promised(
     plan: &Series,
     sent: &Series,
     run: Option<(&Series, &Series, usize)>,
-    learnt: impl Fn(&str) -> (Option<f64>, Option<Stop>),
+    learnt: impl Fn(&str) -> OfRuns,
     rules: &Rules,
 ) -> Result<(Predicted, Vec<Response>), FitError> {
     let left = |name: &str| {
@@ -132,7 +153,7 @@ pub fn promised(
             if changed_rad < SAME_RAD.max(SAME * corrected_rad) { 0.0 } else { changed_rad }
         });
         let times = run.map_or(1, |(.., times)| times);
-        Left::of(fit, name, (changed, times), learnt(name).0)
+        Left::of(fit, name, (changed, times), learnt(name).spread_rad)
     };
     let (mut pairs, mut responses) = (Vec::new(), Vec::new());
     for track in &plan.tracks {
@@ -148,9 +169,16 @@ pub fn promised(
             run.and_then(|(sent, came, _)| Some((sent.track(track.name())?, came.track(track.name())?)));
         let response = match before {
             Some((sent, came)) => {
-                let held = learnt(track.name()).1;
-                let held = |t_s: f64| held.is_some_and(|stop| stop.is_before(track.held_at(t_s).position));
-                changed(came, &predict(&joint.model, sent)?, response, held)
+                let OfRuns { held, by_chance, .. } = learnt(track.name());
+                let from_s = track.t_s().first().copied().unwrap_or_default();
+                let comes = |t_s: f64| match (held, by_chance) {
+                    (Some(stop), _) if stop.is_before(track.held_at(t_s).position) => Comes::Again,
+                    (_, Some(chance)) if (chance.from_s..chance.to_s).contains(&(t_s - from_s)) => {
+                        Comes::Otherwise
+                    }
+                    _ => Comes::Changed,
+                };
+                changed(came, &predict(&joint.model, sent)?, response, comes)
             }
             None => response,
         };
@@ -164,15 +192,13 @@ pub fn promised(
 /// anew.
 const SAME_RAD: f64 = 2e-4;
 
-/// What came before, and what the model says that changes but where the joint is held.
-fn changed(came: &Track, modelled_before: &Track, modelled: Track, held: impl Fn(f64) -> bool) -> Track {
+/// What came before, and what the model says that changes.
+fn changed(came: &Track, modelled_before: &Track, modelled: Track, comes: impl Fn(f64) -> Comes) -> Track {
     let position = (modelled.t_s().iter().zip(modelled.position()))
-        .map(|(t_s, now)| {
-            if held(*t_s) {
-                came.held_at(*t_s).position
-            } else {
-                now + unexplained(came, modelled_before, *t_s)
-            }
+        .map(|(t_s, now)| match comes(*t_s) {
+            Comes::Again => came.held_at(*t_s).position,
+            Comes::Changed => now + unexplained(came, modelled_before, *t_s),
+            Comes::Otherwise => *now,
         })
         .collect();
     Track::of(modelled.kind(), modelled.name(), modelled.t_s(), position, &[]).unwrap_or(modelled)

@@ -44,6 +44,7 @@ mod recorders;
 mod remote;
 mod replan;
 mod report;
+mod season;
 mod set_values;
 mod simulate;
 mod sliding;

@@ -287,12 +287,15 @@ fn trust(replanned: &Replanned) -> Check {
 /// `None` if the last log carries no promise, or nothing was measured.
 fn promise(replanned: &Replanned) -> Option<Check> {
     let run = replanned.past.runs.last()?;
-    let (promised, measured_mean_peak_rad) = (run.promised?, run.mean_peak_rad?);
+    let (promised, usual_rad) = (run.promised?, run.mean_peak_rad?);
+    let measured_mean_peak_rad = run.mean_peak_as_it_came_rad.unwrap_or(usual_rad);
     let bound_rad = promised.mean_peak_margin_rad;
     let before = replanned.past.runs.iter().rev().skip(1).filter_map(|run| run.mean_peak_rad);
     let best_before_rad = before.fold(f64::INFINITY, f64::min);
     let level = match measured_mean_peak_rad {
         came if came <= bound_rad => Level::Good,
+        // One start that came so in this run alone.
+        _ if usual_rad <= bound_rad => Level::Caution,
         // What was promised of the machine before it changed is no reason against what was learnt since, nor is too much of a promise
         // against a command that served the machine well, or against one that is returned to.
         came if came <= OTHER_MACHINE * bound_rad || changed(replanned) || returns(replanned) => {
@@ -326,10 +329,12 @@ fn outlook(replanned: &Replanned) -> Check {
     Check { level: caution(worse), finding: Finding::Outlook { last_mean_peak_rad, expected } }
 }
 
-/// `None` unless the last run was corrected, and one was not.
+/// `None` unless the last run was corrected, and one was not, and where something came in it by chance.
 fn whole(replanned: &Replanned) -> Option<Check> {
     let runs = &replanned.past.runs;
-    let overall = Overall::of(runs, runs.last()?)?;
+    let joints = replanned.command.iter().flat_map(|command| &command.joints);
+    let sure = joints.into_iter().all(|joint| joint.by_chance.is_none());
+    let overall = Overall::of(runs, runs.last()?).filter(|_| sure)?;
     Some(Check { level: caution(overall.is_worse()), finding: Finding::Whole { overall } })
 }
 
