@@ -246,7 +246,8 @@ fn trust(joints: &[JointTrust]) -> String {
     let mut found = Vec::new();
     if !hunting.is_empty() {
         found.push(format!(
-            "Oscillating by themselves: {hunting}; mend their controllers, less gain or less integral action."
+            "Oscillating by themselves: {hunting}; mend their controllers, less gain or less integral action, or, of one \
+             that does so one way alone, its counterbalance valve."
         ));
     }
     if !ringing.is_empty() {

@@ -331,6 +331,16 @@ mod tests {
             "the first again"
         );
         assert_eq!(of(&[1.0, 1.2, 1.201], &[0.04, 0.002, 0.0014]), (0, false, 3), "what was gained was sent");
+        // A valve that stuck once: the same command then keeps what was promised of it.
+        let stuck = |again: f64| {
+            let mut history = history(&[0.04, 0.02, 0.03, again]);
+            history.series = [1.0, 1.1, 1.2, 1.2].iter().map(|by| (sent(*by), sent(0.0))).collect();
+            history.places = (0..4).collect();
+            history.runs[2].promised = Some(Promise::new([0.0012, 0.0015], None));
+            let (others, _) = history.without_another_machine(&mut |_| None);
+            (others.into_iter().collect::<Vec<_>>(), history.runs.len())
+        };
+        assert_eq!((stuck(0.0014), stuck(0.003)), ((vec![2], 3), (vec![0, 1, 2], 1)));
         // The oil warms: what is kept comes to more each time, and no older command is better for having been sent before.
         let kept = |promised_rad: f64, newest: f64| {
             let mut history = history(&[0.04, 0.0101, 0.01, 0.01, newest]);

@@ -86,11 +86,11 @@ pub enum ReplanFailure {
          once; leave the last log out, or, if its plan is meant, {log}"
     )]
     BreaksOff { log: String, after_s: f64 },
-    /// A log that ends or begins in a rest of a plan that goes on in another.
+    /// A log that ends or begins within a plan that another log has as a whole.
     #[error(
-        "{log} {} in a rest of the plan of {other}, which {}: the command would be of a part of the task; leave {log} out, or, if that part \
+        "{log} {} the plan of {other} does, which {}: the command would be of a part of the task; leave {log} out, or, if that part \
          is meant, {other}",
-        if *ends { "ends" } else { "begins" },
+        if *ends { "ends before" } else { "begins after" },
         if *ends { "moves on after it" } else { "moves before it" }
     )]
     InRest { log: String, other: String, ends: bool },

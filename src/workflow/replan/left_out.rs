@@ -184,7 +184,9 @@ struct Moved {
 
 /// How far a joint moves by how far its plan does, in a run of the same plan as another one's, and in the same motion.
 fn share(own: &[Moved], newest: &[Moved], place: usize) -> Option<f64> {
-    let (own, newest) = (own.get(place).filter(|_| own.len() == newest.len())?, newest.get(place)?);
+    // Motions are told apart by their order.
+    let alike = place == 0 || own.len() == newest.len();
+    let (own, newest) = (own.get(place).filter(|_| alike)?, newest.get(place)?);
     let same = (own.asked_rad - newest.asked_rad).abs() < ALIKE * newest.asked_rad;
     let least_rad = if place > 0 { LEAST_OF_MOTION_RAD } else { LEAST_RAD };
     (same && own.asked_rad > least_rad).then_some(own.moved_rad / own.asked_rad)

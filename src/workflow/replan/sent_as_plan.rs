@@ -12,8 +12,13 @@ use crate::{
 const ALIKE: f64 = 0.65;
 const SHARE: [f64; 2] = [0.15, 2.5];
 
-/// Plans that differ by less are one, rad or m, root mean square; so many of the joints that move are corrected.
+/// Or, where nearly all of a correction is to be early, how little of the error plans differ by that are laid upon each other: more than by
+/// their stamps and less than those of other motions do.
+const LITTLE: [f64; 2] = [0.05, 0.3];
+
+/// Plans that differ by less are one, rad or m, root mean square, and at their ends; so many of the joints that move are corrected.
 const LEAST: f64 = 3e-4;
+const ENDS: f64 = 1e-3;
 const MOST_JOINTS: f64 = 0.7;
 
 /// Plans are compared every so often, and where they lie upon each other best up to so many steps apart: logs begin when they do, s.
@@ -54,8 +59,21 @@ fn is_corrected(plan: &Series, other: &Series, came: &Series) -> bool {
         let differs = |by: i32| less(&at(plan, STEP_S * f64::from(by)), &own);
         let nearest = (-STEPS..=STEPS).map(differs).min_by(|a, b| rms(a).total_cmp(&rms(b)))?;
         let speed: Vec<f64> = own.windows(2).map(|two| two[1] - two[0]).chain([0.0]).collect();
+        // Another pace makes a plan later in proportion to the time.
+        let later: Vec<f64> = speed.iter().zip(&t_s).map(|(speed, t_s)| speed * t_s).collect();
+        let later = without(later, &speed);
+        let aside = |values| without(without(values, &speed), &later);
+        let error = less(&own, &came);
+        let same_ends =
+            [nearest.first(), nearest.last()].iter().all(|end| end.is_some_and(|by| by.abs() < ENDS));
         let moves = rms(&speed) > 0.0;
-        moves.then(|| is_share(&without(nearest, &speed), &without(less(&own, &came), &speed)))
+        moves.then(|| {
+            let (differs, left) = (aside(nearest), rms(&error));
+            let error = aside(error);
+            let little = (LITTLE[0]..LITTLE[1]).contains(&(rms(&differs) / left));
+            let little = little && product(&differs, &error) > 0.0;
+            same_ends && rms(&differs) > LEAST && (little || is_share(&differs, &error))
+        })
     };
     let all: Vec<bool> = other.tracks.iter().filter_map(own).collect();
     let corrected = all.iter().filter(|is| **is).count();
@@ -78,9 +96,7 @@ fn without(values: Vec<f64>, others: &[f64]) -> Vec<f64> {
 
 fn is_share(differs: &[f64], error: &[f64]) -> bool {
     let (along, all) = (product(differs, error), product(error, error));
-    rms(differs) > LEAST
-        && along > ALIKE * (product(differs, differs) * all).sqrt()
-        && (SHARE[0]..SHARE[1]).contains(&(along / all))
+    along > ALIKE * (product(differs, differs) * all).sqrt() && (SHARE[0]..SHARE[1]).contains(&(along / all))
 }
 
 #[cfg(test)]
