@@ -38,7 +38,7 @@ pub enum PlantError {
     },
     #[error(
         "there is no {} {name:?}{}; there are {known}",
-        if name.ends_with(".toml") { "file" } else { "plant" },
+        if std::path::Path::new(name).extension().is_some() { "file" } else { "plant" },
         suggestion(nearest.as_deref())
     )]
     UnknownPreset { name: String, nearest: Option<String>, known: String },

@@ -31,7 +31,7 @@ pub(super) fn shown(limit: Limit, kind: JointKind, value: f64) -> String {
         Limit::Speed => (of_joint, decimals, unit("deg/s", "mm/s")),
         Limit::Acceleration => (of_joint, decimals, unit("deg/s2", "mm/s2")),
         Limit::Jerk => (of_joint, decimals, unit("deg/s3", "mm/s3")),
-        Limit::Torque => (value, if value.abs() < 200.0 { 1 } else { 0 }, unit("N m", "N")),
+        Limit::Torque => (value, usize::from(value.abs() < 200.0), unit("N m", "N")),
         Limit::RodSpeed => (value * 1e3, 1, "mm/s"),
         Limit::RodForce => (value / 1e3, 2, "kN"),
         Limit::PumpFlow => (value * 6e4, 1, "l/min"),

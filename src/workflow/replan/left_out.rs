@@ -178,7 +178,7 @@ fn standing(shares: &[Option<f64>]) -> Vec<usize> {
 /// How far the plan of a joint moves and how far the joint, rad, and where its motion begins, s.
 struct Moved {
     asked_rad: f64,
-    moved_rad: f64,
+    came_rad: f64,
     from_s: f64,
 }
 
@@ -189,7 +189,7 @@ fn share(own: &[Moved], newest: &[Moved], place: usize) -> Option<f64> {
     let (own, newest) = (own.get(place).filter(|_| alike)?, newest.get(place)?);
     let same = (own.asked_rad - newest.asked_rad).abs() < ALIKE * newest.asked_rad;
     let least_rad = if place > 0 { LEAST_OF_MOTION_RAD } else { LEAST_RAD };
-    (same && own.asked_rad > least_rad).then_some(own.moved_rad / own.asked_rad)
+    (same && own.asked_rad > least_rad).then_some(own.came_rad / own.asked_rad)
 }
 
 /// Of a whole run first, then of each motion of the joint.
@@ -198,11 +198,11 @@ fn moved(sides: [&Series; 2], joint: &str) -> Vec<Moved> {
     let Some(pair) = align(planned, measured) else { return Vec::new() };
     let of = |[from_s, to_s]: [f64; 2]| {
         let [from, to] = [from_s, to_s].map(|at_s| pair.t_s.partition_point(|t_s| *t_s < at_s));
-        let [asked_rad, moved_rad] =
+        let [asked_rad, came_rad] =
             [&pair.planned, &pair.measured].map(|angles| deviation(&angles[from..to]));
-        Moved { asked_rad, moved_rad, from_s }
+        Moved { asked_rad, came_rad, from_s }
     };
-    let starts = replay(&[pair.clone()], &Rules::default()).transitions;
+    let starts = replay(std::slice::from_ref(&pair), &Rules::default()).transitions;
     let windows = starts.iter().map(|start| start.window_s);
     std::iter::once([f64::NEG_INFINITY, f64::INFINITY]).chain(windows).map(of).collect()
 }

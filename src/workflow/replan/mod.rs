@@ -59,7 +59,7 @@ use crate::{
     fit::{Fit, JointFit},
     log::Recording,
     plan::{PlanEvaluation, Setup, Timing},
-    remark::Code,
+    remark::{Code, Remarks},
     task::{Ceilings, Objective, Objectives},
     workflow::{correctable::uncorrectable, names::told_apart, plan::Shaping},
 };
@@ -100,15 +100,7 @@ pub fn run(
     let last = Last::of(path, newest, inputs)?;
     inputs.check_bounds(&last.plan)?;
     let mut history = History::of((&names, &inputs.logs), observed, &last.plan, &inputs.rules)?;
-    if let Some(other) = sent_as_plan::behind(&names, observed, &history.others)? {
-        return Err(ReplanFailure::SentAsPlan { path: path.clone(), other: other.to_owned() });
-    }
-    for (log, by_s) in &history.cut_off {
-        let message = format!(
-            "{log} ends {by_s:.1} s before its plan does: its machine is learnt, of its error nothing"
-        );
-        doubts.add(Code::Stopped, 1, message);
-    }
+    judged(path, &names, observed, &history, &mut doubts)?;
     parts::remark((&inputs.logs, &names), observed, &history.others, &mut doubts);
     let chosen = |places: &mut dyn Iterator<Item = usize>| -> (Vec<String>, Vec<&Recording>) {
         places.map(|k| (names[k].clone(), &observed[k])).unzip()
@@ -193,6 +185,26 @@ pub fn run(
     let mut replanned = outcome::replanned((fit, fitted_to), last, before, past, search, chosen, remarks)?;
     replanned.newest_left_out = useless.newest;
     Ok(replanned)
+}
+
+/// An error for a newest plan that is another one with its correction, and remarks on logs that end before their plan does.
+fn judged(
+    path: &std::path::Path,
+    names: &[String],
+    observed: &[Recording],
+    history: &History,
+    doubts: &mut Remarks,
+) -> Result<(), ReplanFailure> {
+    if let Some(other) = sent_as_plan::behind(names, observed, &history.others)? {
+        return Err(ReplanFailure::SentAsPlan { path: path.to_owned(), other: other.to_owned() });
+    }
+    for (log, by_s) in &history.cut_off {
+        let message = format!(
+            "{log} ends {by_s:.1} s before its plan does: its machine is learnt, of its error nothing"
+        );
+        doubts.add(Code::Stopped, 1, message);
+    }
+    Ok(())
 }
 
 /// An error for a run that is none of its plan.
