@@ -5,16 +5,19 @@ use crate::{
     log::Recording,
     math::rms,
     series::{Series, SignalError, Track, bridged},
+    workflow::carried::Carried,
 };
 
 /// How far a correction and the error behind it are the same but for their size and for a part that goes with the speed, 0 to 1, and what
-/// share of it is one.
+/// share of it is one at most.
 const ALIKE: f64 = 0.65;
-const SHARE: [f64; 2] = [0.15, 2.5];
+const MOST_SHARE: f64 = 2.5;
 
 /// Or, where nearly all of a correction is to be early, how little of the error plans differ by that are laid upon each other: more than by
 /// their stamps and less than those of other motions do.
 const LITTLE: [f64; 2] = [0.05, 0.3];
+/// What they differ by is then a little like the error; that of stamps that jitter is not.
+const LITTLE_ALIKE: f64 = 0.12;
 
 /// Plans that differ by less are one, rad or m, root mean square, and at their ends; so many of the joints that move are corrected.
 const LEAST: f64 = 3e-4;
@@ -32,8 +35,8 @@ pub(super) fn behind<'a>(
     others: &[String],
 ) -> Result<Option<&'a str>, SignalError> {
     let Some(newest) = observed.last() else { return Ok(None) };
-    // What a log with both says of its plan holds.
-    if newest.command.is_some() {
+    // What a log with both, or with its task, says of its plan holds.
+    if newest.command.is_some() || Carried::of(newest).chosen().is_some() {
         return Ok(None);
     }
     let plan = &*bridged(&newest.planned)?;
@@ -71,8 +74,9 @@ fn is_corrected(plan: &Series, other: &Series, came: &Series) -> bool {
             let (differs, left) = (aside(nearest), rms(&error));
             let error = aside(error);
             let little = (LITTLE[0]..LITTLE[1]).contains(&(rms(&differs) / left));
-            let little = little && product(&differs, &error) > 0.0;
-            same_ends && rms(&differs) > LEAST && (little || is_share(&differs, &error))
+            same_ends
+                && rms(&differs) > LEAST
+                && is_share(&differs, &error, if little { LITTLE_ALIKE } else { ALIKE })
         })
     };
     let all: Vec<bool> = other.tracks.iter().filter_map(own).collect();
@@ -94,9 +98,10 @@ fn without(values: Vec<f64>, others: &[f64]) -> Vec<f64> {
     values.into_iter().zip(others).map(|(value, other)| value - share * other).collect()
 }
 
-fn is_share(differs: &[f64], error: &[f64]) -> bool {
+/// Whether one is a share of the other, and so far the same.
+fn is_share(differs: &[f64], error: &[f64], alike: f64) -> bool {
     let (along, all) = (product(differs, error), product(error, error));
-    along > ALIKE * (product(differs, differs) * all).sqrt() && (SHARE[0]..SHARE[1]).contains(&(along / all))
+    along > alike * (product(differs, differs) * all).sqrt() && along < MOST_SHARE * all
 }
 
 #[cfg(test)]
@@ -125,6 +130,8 @@ mod tests {
             !told(&|t| swing(3.0 + 1.02 * (t - 3.0))) && !told(&|t| swing(3.0 + 0.97 * (t - 3.0))),
             "another pace"
         );
+        let jitters = |t: f64| 0.02 * (31.0 * t).sin() + 0.02 * (17.0 * t + 1.0).cos();
+        assert!(!told(&|t| swing(t + jitters(t))), "stamps that jitter");
         assert!(!told(&|t| 1.1 * swing(t)) && !told(&|t| 0.9 * swing(t)), "farther, or less far");
     }
 }
