@@ -3,7 +3,7 @@
 
 use crate::{
     log::Recording,
-    math::rms,
+    math::{range, rms},
     series::{Series, SignalError, Track, bridged},
     workflow::carried::Carried,
 };
@@ -19,9 +19,10 @@ const LITTLE: [f64; 2] = [0.05, 0.3];
 /// What they differ by is then a little like the error; that of stamps that jitter is not.
 const LITTLE_ALIKE: f64 = 0.12;
 
-/// Plans that differ by less are one, rad or m, root mean square, and at their ends; so many of the joints that move are corrected.
+/// Plans that differ by less are one, rad or m, root mean square; they begin and end within this share of their range, and so many of the
+/// joints that move are corrected.
 const LEAST: f64 = 3e-4;
-const ENDS: f64 = 1e-3;
+const ENDS: f64 = 0.05;
 const MOST_JOINTS: f64 = 0.7;
 
 /// Plans are compared every so often, and where they lie upon each other best up to so many steps apart: logs begin when they do, s.
@@ -65,19 +66,18 @@ fn is_corrected(plan: &Series, other: &Series, came: &Series) -> bool {
         // Another pace makes a plan later in proportion to the time.
         let later: Vec<f64> = speed.iter().zip(&t_s).map(|(speed, t_s)| speed * t_s).collect();
         let later = without(later, &speed);
-        let aside = |values| without(without(values, &speed), &later);
         let error = less(&own, &came);
-        let same_ends =
-            [nearest.first(), nearest.last()].iter().all(|end| end.is_some_and(|by| by.abs() < ENDS));
-        let moves = rms(&speed) > 0.0;
-        moves.then(|| {
-            let (differs, left) = (aside(nearest), rms(&error));
-            let error = aside(error);
-            let little = (LITTLE[0]..LITTLE[1]).contains(&(rms(&differs) / left));
-            same_ends
-                && rms(&differs) > LEAST
-                && is_share(&differs, &error, if little { LITTLE_ALIKE } else { ALIKE })
-        })
+        let [least, most] = range(own.iter().copied());
+        let same_ends = [nearest.first(), nearest.last()]
+            .iter()
+            .all(|end| end.is_some_and(|by| by.abs() < ENDS * (most - least)));
+        let left = rms(&error);
+        let [differs, error] = [nearest, error].map(|values| without(values, &speed));
+        let [on_pace, left_on_pace] = [&differs, &error].map(|values| without(values.clone(), &later));
+        let little = (LITTLE[0]..LITTLE[1]).contains(&(rms(&on_pace) / left));
+        let told =
+            is_share(&differs, &error, ALIKE) || little && is_share(&on_pace, &left_on_pace, LITTLE_ALIKE);
+        (rms(&speed) > 0.0).then_some(same_ends && rms(&differs) > LEAST && told)
     };
     let all: Vec<bool> = other.tracks.iter().filter_map(own).collect();
     let corrected = all.iter().filter(|is| **is).count();
