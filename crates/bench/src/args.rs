@@ -90,7 +90,7 @@ pub(crate) struct LearningArgs {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct MoeaArgs {
-    /// Problems: DTLZ1 to DTLZ7, WFG1 to WFG9, or all
+    /// Problems: DTLZ1 to DTLZ7, WFG1 to WFG9, MW1 to MW4, or all
     #[arg(
         long,
         value_name = "NAME,...",

@@ -1,5 +1,7 @@
 //! Reference directions on the unit simplex.
 
+use rayon::prelude::*;
+
 use super::error::{MoeaError, Unsound};
 
 /// More directions than this are refused: a population of that size cannot be meant.
@@ -30,8 +32,8 @@ pub enum Directions {
 /// Number of directions of `divisions` for `objectives`: C(m + p - 1, p), eq. 7; `None` when
 /// it is beyond [`MOST_DIRECTIONS`].
 pub fn direction_count(objectives: usize, divisions: usize) -> Option<usize> {
-    if divisions == 0 {
-        return Some(1);
+    if divisions == 0 || objectives == 0 {
+        return Some(objectives.min(1));
     }
     let mut count: u128 = 1;
     for k in 1..objectives {
@@ -111,6 +113,7 @@ impl Directions {
                 6 => layers(6, 4, 1),
                 7 => layers(7, 3, 2),
                 8..=10 => layers(objectives, 3, 2),
+                _ if direction_count(objectives, 2).is_none() => das_dennis(objectives, 1),
                 _ => layers(objectives, 2, 1),
             },
         }
@@ -176,19 +179,18 @@ fn fitting(objectives: usize, wanted: usize) -> Result<Vec<f64>, MoeaError> {
 /// The `near` directions closest to each direction, itself first.
 pub(super) fn neighbours(directions: &[f64], m: usize, near: usize) -> Vec<usize> {
     let all: Vec<&[f64]> = directions.chunks_exact(m.max(1)).collect();
-    let mut flat = Vec::with_capacity(all.len() * near);
     let by_distance = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
     let near = near.min(all.len());
-    for own in &all {
+    let of = |own: &&[f64]| -> Vec<usize> {
         let apart = |other: &&[f64]| other.iter().zip(*own).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
         let mut order: Vec<(f64, usize)> = all.iter().map(apart).zip(0..).collect();
         if near < order.len() {
             order.select_nth_unstable_by(near, by_distance);
         }
         order[..near].sort_unstable_by(by_distance);
-        flat.extend(order[..near].iter().map(|(_, other)| other));
-    }
-    flat
+        order[..near].iter().map(|(_, other)| *other).collect()
+    };
+    all.par_iter().flat_map_iter(of).collect()
 }
 
 #[cfg(test)]

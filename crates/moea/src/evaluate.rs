@@ -150,11 +150,12 @@ fn upper_quartile(mut values: Vec<f64>) -> Option<f64> {
 }
 
 /// The violation, infinite if anything is not a number of reasonable size. Zeros lose their
-/// sign, so that the order of objectives is the order of their bits.
+/// sign, so that the order of objectives is the order of their bits; what is no number becomes infinite, so that equal members
+/// are equal.
 pub(super) fn checked(violation: f64, f: &mut [f64]) -> f64 {
     let mut sound = violation.abs() <= LARGEST;
     for value in f {
-        *value += 0.0;
+        *value = if value.is_nan() { f64::INFINITY } else { *value + 0.0 };
         sound &= value.abs() <= LARGEST;
     }
     if sound { violation.max(0.0) } else { f64::INFINITY }

@@ -80,7 +80,7 @@ impl Breeding {
             }
             mutate(self.operators.mutation_eta, mutation_rate, &self.space, child, rng);
             for _ in 0..ATTEMPTS {
-                if !(population.contains(child) || children.contains(child)) {
+                if mutation_rate <= 0.0 || !(population.contains(child) || children.contains(child)) {
                     break;
                 }
                 mutate(self.operators.mutation_eta, self.mutation_rate, &self.space, child, rng);
@@ -95,6 +95,8 @@ pub(super) struct Genetic {
     pub(super) mating: Box<dyn Mating>,
     pub(super) survival: Box<dyn Survival>,
     pub(super) breeding: Breeding,
+    /// Members that are to survive.
+    keep: usize,
     pairs: Vec<Pair>,
     merged: Population,
     chosen: Vec<usize>,
@@ -107,6 +109,7 @@ impl Genetic {
             mating,
             survival,
             breeding,
+            keep: 0,
             pairs: Vec::new(),
             merged: Population::default(),
             chosen: Vec::new(),
@@ -114,10 +117,11 @@ impl Genetic {
         }
     }
 
-    fn select(&mut self, population: &mut Population, keep: usize, streams: &mut Streams) {
+    fn select(&mut self, population: &mut Population, streams: &mut Streams) {
+        let keep = self.keep;
         self.survival.select(&self.merged, keep, &mut streams.survival, &mut self.chosen, &mut self.ranking);
         population.clear();
-        for &i in self.chosen.iter().filter(|i| **i < self.merged.len()) {
+        for &i in self.chosen.iter().filter(|i| **i < self.merged.len()).take(keep) {
             population.push_from(&self.merged, i);
         }
     }
@@ -126,7 +130,8 @@ impl Genetic {
 impl Method for Genetic {
     fn begin(&mut self, population: &mut Population, streams: &mut Streams) {
         self.merged = population.clone();
-        self.select(population, population.len(), streams);
+        self.keep = population.len();
+        self.select(population, streams);
     }
 
     fn batch(&self, n: usize) -> usize {
@@ -142,6 +147,7 @@ impl Method for Genetic {
         streams: &mut Streams,
     ) {
         let context = MatingContext { population, ranking: &self.ranking, progress };
+        self.pairs.clear();
         self.mating.pair(&context, wanted, &mut streams.variation, &mut self.pairs);
         let exists = |pair: &&Pair| pair.first.max(pair.second) < population.len();
         for &pair in self.pairs.iter().filter(exists) {
@@ -153,6 +159,6 @@ impl Method for Genetic {
         self.merged.clear();
         self.merged.append(population);
         self.merged.append(children);
-        self.select(population, population.len(), streams);
+        self.select(population, streams);
     }
 }

@@ -24,7 +24,7 @@ pub struct Pair {
     pub second: usize,
     /// Factor on the crossover rate.
     pub crossover: f64,
-    /// Factor on the mutation rate.
+    /// Factor on the mutation rate, but for children that repeat somebody; 0: none of them is mutated.
     pub mutation: f64,
 }
 
@@ -37,8 +37,8 @@ impl Pair {
 
 /// Chooses parents.
 pub trait Mating: Send {
-    /// Writes pairs of parents for at least `children` children, two children a pair. A pair of members that do not
-    /// exist has none.
+    /// Writes pairs of parents for at least `children` children, two children a pair, into `pairs`, which is empty. A pair of
+    /// members that do not exist has none.
     fn pair(&mut self, context: &MatingContext<'_>, children: usize, rng: &mut Random, pairs: &mut Vec<Pair>);
 
     /// Number of offspring slots that are not filled by new children.

@@ -50,7 +50,8 @@ impl Targets {
         let mut alive = vec![true; n];
         let nearest = |i: usize, alive: &[bool]| {
             let others = (0..n).filter(|&j| j != i && alive[j]).map(|j| (cosine(i, j), j));
-            others.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((-1.0, i))
+            // Of equals the first, who goes last: few then have to look for another.
+            others.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1))).unwrap_or((-1.0, i))
         };
         let mut near: Vec<(f64, usize)> = (0..n).map(|i| nearest(i, &alive)).collect();
         for _ in keep..n {

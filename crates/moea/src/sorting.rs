@@ -47,9 +47,15 @@ impl Sorting {
         for place in 0..self.order.len() {
             let i = self.order[place];
             let f = population.f(i);
-            let rank = (0..self.used)
-                .find(|&rank| !dominated_by_earlier(&self.placed[rank], f))
-                .unwrap_or(self.used);
+            let rank = match *f {
+                // The last of each front has the least second objective, and none less than that of a better front.
+                [f0, f1] => self.placed[..self.used].partition_point(
+                    |placed| matches!(placed[..], [.., a0, a1] if a1 <= f1 && (a1 < f1 || a0 < f0)),
+                ),
+                _ => (0..self.used)
+                    .find(|&rank| !dominated_by_earlier(&self.placed[rank], f))
+                    .unwrap_or(self.used),
+            };
             if rank == self.used {
                 self.used += 1;
                 if self.fronts.len() < self.used {
@@ -75,7 +81,7 @@ impl Sorting {
 
 impl Population {
     /// Members that are feasible and dominated by no feasible member, in order.
-    /// O(n log n) comparisons of members when few fronts stand behind one another, O(n²) at worst.
+    /// O(n log n) comparisons of members for two objectives; for more, O(n²) where many are in one front.
     pub fn front(&self) -> Vec<usize> {
         let feasible: Vec<usize> = (0..self.len()).filter(|&i| self.is_feasible(i)).collect();
         let mut sorting = Sorting::default();
@@ -90,7 +96,6 @@ impl Population {
 /// worse by the order of visits. Later ones are closer and asked first.
 fn dominated_by_earlier(placed: &[f64], f: &[f64]) -> bool {
     match *f {
-        [f0, f1] => placed.rchunks_exact(2).any(|a| a[1] <= f1 && (a[1] < f1 || a[0] < f0)),
         [f0, f1, f2] => {
             placed.rchunks_exact(3).any(|a| a[1] <= f1 && a[2] <= f2 && (a[1] < f1 || a[2] < f2 || a[0] < f0))
         }

@@ -14,7 +14,8 @@ pub struct Operators {
     pub crossover_rate: f64,
     /// Distribution index of the crossover; children lie nearer to their parents when it is larger.
     pub crossover_eta: f64,
-    /// Probability that a variable mutates, 0 to 1; one over the number of variables if absent.
+    /// Probability that a variable mutates, 0 to 1; one over the number of variables if absent. A child that repeats somebody is
+    /// mutated at this rate up to eight times more, unless its pair is not to be mutated at all.
     pub mutation_rate: Option<f64>,
     /// Distribution index of the mutation.
     pub mutation_eta: f64,

@@ -72,7 +72,11 @@ fn directions_are_formed_for_those_alone_that_use_them() {
         let none = Settings { directions: Directions::Own(Vec::new()), ..settings };
         assert!(optimise(&Wide(2), &none, silent).is_err(), "{name}");
     }
-    let settings = Settings { population: Some(8), ..Settings::default() };
+    // Of very many objectives there is one direction each, and no more than are allowed.
+    let budget = moea::Budget::Evaluations(2);
+    let settings = Settings { population: Some(8), budget, ..Settings::default() };
+    assert!(optimise(&Wide(1000), &settings, silent).is_ok());
+    let settings = Settings { directions: Directions::Divisions(2), ..settings };
     assert!(optimise(&Wide(1000), &settings, silent).is_err());
 }
 
@@ -256,4 +260,47 @@ fn fronts_of_curves_and_parts_have_nearly_as_many_points_as_asked_for_and_none_i
             assert!(beaten.is_none(), "{f:?} beats {beaten:?}");
         }
     }
+}
+
+/// Parents that are all alike, whose children are to stay as they are.
+struct Unchanged;
+
+impl moea::Mating for Unchanged {
+    fn pair(
+        &mut self,
+        _: &moea::MatingContext<'_>,
+        children: usize,
+        _: &mut moea::Random,
+        pairs: &mut Vec<moea::Pair>,
+    ) {
+        assert!(pairs.is_empty());
+        pairs.resize(children.div_ceil(2), moea::Pair { first: 0, second: 0, crossover: 0.0, mutation: 0.0 });
+    }
+}
+
+/// A survival that keeps one member.
+struct One;
+
+impl moea::Survival for One {
+    fn select(
+        &mut self,
+        _: &moea::Population,
+        keep: usize,
+        _: &mut moea::Random,
+        chosen: &mut Vec<usize>,
+        _: &mut moea::Ranking,
+    ) {
+        assert_eq!(keep, 12);
+        *chosen = vec![0];
+    }
+}
+
+#[test]
+fn parts_of_a_caller_s_own_get_what_is_promised() {
+    let settings =
+        Settings { population: Some(12), budget: moea::Budget::Evaluations(60), ..Settings::default() };
+    let found = moea::optimise_with(&Wide(2), &settings, Unchanged, One, silent).unwrap();
+    assert_eq!((found.evaluations, found.population.len()), (60, 1));
+    let all = &found.population;
+    assert!((0..all.len()).all(|i| all.x(i) == all.x(0)));
 }
