@@ -19,6 +19,8 @@ use crate::{arm::ArmError, suggest::suggestion, text::shell_argument};
 pub enum LogError {
     #[error("cannot {action} {}{}", path.display(), meant_as_output(path, source))]
     File { action: &'static str, path: PathBuf, source: std::io::Error },
+    #[error("{} is empty: no log and no table is in it", path.display())]
+    Empty { path: PathBuf },
     #[error(
         "{} is not an MCAP file: found {found}, expected the bytes 89 4D 43 41 50 30 0D 0A; {}{}",
         path.display(),

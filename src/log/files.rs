@@ -250,12 +250,14 @@ pub(super) fn file_name(path: &Path) -> String {
 }
 
 fn not_mcap(path: &Path, bytes: &[u8]) -> LogError {
+    if bytes.is_empty() {
+        return LogError::Empty { path: path.to_owned() };
+    }
     let start: Vec<String> = bytes.iter().take(8).map(|byte| format!("{byte:02X}")).collect();
-    let (what, fix) = match (bytes, unread(bytes)) {
-        ([], _) => (None, "the file is empty"),
-        (_, Some((what, fix))) => (Some(what), fix),
-        (_, None) => (None, "give an .mcap recording or a ROS 2 bag directory"),
+    let (what, fix) = match unread(bytes) {
+        Some((what, fix)) => (Some(what), fix),
+        None => (None, "give an .mcap recording or a ROS 2 bag directory"),
     };
-    let found = if start.is_empty() { "nothing".to_owned() } else { start.join(" ") };
+    let found = start.join(" ");
     LogError::NotMcap { path: path.to_owned(), found, what, fix }
 }

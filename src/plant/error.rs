@@ -13,6 +13,14 @@ use crate::suggest::suggestion;
 pub enum PlantError {
     #[error("cannot read the plant {}: {reason}", path.display())]
     Read { path: PathBuf, reason: String },
+    #[error("{}: {error}", path.display())]
+    File { path: PathBuf, error: Box<PlantError> },
+    #[error(
+        "{} holds limits that fit found, and no plant: a plant is one of the presets, or a file of dead bands, gains and flows as the guide \
+         of simulate shows",
+        path.display()
+    )]
+    Limits { path: PathBuf },
     #[error("line {line}: {message}")]
     Syntax { line: usize, message: String },
     #[error("line {line}: unknown key {key}; {}", match nearest {

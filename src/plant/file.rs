@@ -97,7 +97,12 @@ impl Parameters {
     pub fn read(path: &Path) -> Result<Self, PlantError> {
         let text = input_file::read_to_string(path)
             .map_err(|source| PlantError::Read { path: path.to_owned(), reason: source.to_string() })?;
-        Self::parse(&text)
+        let limits =
+            |line: &str| line.trim_start().starts_with("format") && line.contains("hydrotrace.limits");
+        if text.lines().any(limits) {
+            return Err(PlantError::Limits { path: path.to_owned() });
+        }
+        Self::parse(&text).map_err(|error| PlantError::File { path: path.to_owned(), error: Box::new(error) })
     }
 }
 

@@ -2,15 +2,13 @@
 
 use super::{
     clock::{Found, Look},
-    spread::runs,
+    spread::{UNEVEN, complete, runs},
     time::TimeSource,
 };
 use crate::{math::median, units::NS_PER_S};
 
 /// Fewer stamps than this, beside the first and the last, tell nothing.
 const LEAST: usize = 3;
-/// Share of the rows of a stamp that may be more or less of it; one row always may.
-const UNEVEN: f64 = 0.1;
 
 impl Look<'_> {
     /// A time that repeats itself in most rows, with as many rows to each stamp, as one that tells the rows apart.
@@ -20,13 +18,11 @@ impl Look<'_> {
         }
         let [ns, _] = self.both(text, [&found.source; 2]);
         let Some((rows, step_ns)) = rows_each(&ns) else { return found };
-        let lacking = lacking(&ns, rows);
-        let lacking = if lacking > 0 {
-            format!(
-                "; in {lacking} of them rows are missing, and which is not known: those that are there are taken for the first"
-            )
-        } else {
-            String::new()
+        let lacking = match complete(&ns, rows).iter().filter(|complete| !**complete).count() {
+            0 => String::new(),
+            left => format!(
+                "; {left} rows of steps that lack some are left out, for which are missing is not known"
+            ),
         };
         let unit = found.doubt.as_ref().map_or(String::new(), |doubt| format!("{doubt}; it "));
         let doubt = format!(
@@ -40,13 +36,6 @@ impl Look<'_> {
             ..found
         }
     }
-}
-
-/// Stamps but the first and the last that have fewer rows than others.
-fn lacking(stamp_ns: &[i64], rows: usize) -> usize {
-    let runs = runs(stamp_ns);
-    let inner = runs.get(1..runs.len().saturating_sub(1)).unwrap_or_default();
-    inner.iter().filter(|(_, own)| (*own as f64) < (1.0 - UNEVEN) * rows as f64 - 1.0).count()
 }
 
 /// Rows of each stamp, and the step from one to the next, ns; `None` where they are uneven.
@@ -71,14 +60,15 @@ mod tests {
     fn rows_of_whole_seconds_lie_evenly_in_them() {
         // Ten a second, from 0.7 s on; one second lacks a row.
         let mut ns: Vec<i64> = (7..63).filter(|row| *row != 34).map(|row| row / 10 * 1_000_000_000).collect();
-        assert_eq!((rows_each(&ns), lacking(&ns, 10)), (Some((10, 1_000_000_000)), 0));
+        let lacking = |ns: &[i64]| complete(ns, 10).iter().filter(|complete| !**complete).count();
+        assert_eq!((rows_each(&ns), lacking(&ns)), (Some((10, 1_000_000_000)), 0));
         spread(&mut ns, 10, 1_000_000_000);
         assert_eq!(ns[..4], [700_000_000, 800_000_000, 900_000_000, 1_000_000_000]);
         assert!(ns.windows(2).all(|two| two[1] > two[0]), "{ns:?}");
         assert_eq!(ns[28], 3_500_000_000);
         let cut: Vec<i64> =
             (0..200).filter(|row| !(24..29).contains(row)).map(|row| row / 10 * 1_000_000_000).collect();
-        assert_eq!((rows_each(&cut), lacking(&cut, 10)), (Some((10, 1_000_000_000)), 1));
+        assert_eq!((rows_each(&cut), lacking(&cut)), (Some((10, 1_000_000_000)), 5));
         // A clock that stands, and one that is written when something happens.
         assert_eq!(rows_each(&[0, 0, 0, 0, 0]), None);
         assert_eq!(rows_each(&[0, 1, 1, 1, 1, 2, 3, 3, 3, 3, 3, 3, 4, 4, 5]), None);

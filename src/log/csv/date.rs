@@ -26,19 +26,24 @@ pub(super) enum Part {
     TimeOfDay,
     /// A span from a zero that is not said.
     Elapsed,
+    /// The same as minutes and seconds alone.
+    Minutes,
 }
 
 /// Tried in this order: of two that fit, the first is meant more often.
-const FORMS: [(&str, &str, Part); 39] = [
+const FORMS: [(&str, &str, Part); 44] = [
     ("%Y-%m-%d %H:%M:%S%.f%#z", "yyyy-mm-dd hh:mm:ss with zone", Part::Zoned),
     ("%Y-%m-%d %H:%M:%S%.f", "yyyy-mm-dd hh:mm:ss", Part::Local),
     ("%Y/%m/%d %H:%M:%S%.f", "yyyy/mm/dd hh:mm:ss", Part::Local),
+    ("%Y/%m/%d %H:%M:%S%.f%#z", "yyyy/mm/dd hh:mm:ss with zone", Part::Zoned),
     ("%Y-%m-%d-%H:%M:%S%.f", "yyyy-mm-dd-hh:mm:ss", Part::Local),
     ("%Y%m%d %H%M%S%.f", "yyyymmdd hhmmss", Part::Local),
     ("%Y%m%d %H%M%S%.f%#z", "yyyymmdd hhmmss with zone", Part::Zoned),
     ("%Y%m%d%H%M%S%3f", "yyyymmddhhmmssfff", Part::Local),
     ("%Y%m%d%H%M%S%.f", "yyyymmddhhmmss", Part::Local),
     ("%d.%m.%Y %H:%M:%S%.f", "dd.mm.yyyy hh:mm:ss", Part::Local),
+    ("%d.%m.%Y %H:%M:%S%.f%#z", "dd.mm.yyyy hh:mm:ss with zone", Part::Zoned),
+    ("%m/%d/%Y %I:%M:%S%.f %p %#z", "mm/dd/yyyy hh:mm:ss am/pm with zone", Part::Zoned),
     ("%d.%m.%y %H:%M:%S%.f", "dd.mm.yy hh:mm:ss", Part::Local),
     ("%a %b %d %H:%M:%S%.f %Y", "day mon dd hh:mm:ss yyyy", Part::Local),
     ("%d-%b-%Y %I:%M:%S%.f %p", "dd-mon-yyyy hh:mm:ss am/pm", Part::Local),
@@ -52,6 +57,7 @@ const FORMS: [(&str, &str, Part); 39] = [
     ("%d/%m/%Y %I:%M:%S%.f %p", "dd/mm/yyyy hh:mm:ss am/pm", Part::Local),
     ("%d/%m/%Y %H:%M:%S%.f", "dd/mm/yyyy hh:mm:ss", Part::Local),
     ("%m/%d/%Y %H:%M:%S%.f", "mm/dd/yyyy hh:mm:ss", Part::Local),
+    ("%m/%d/%Y %H:%M:%S%.f%#z", "mm/dd/yyyy hh:mm:ss with zone", Part::Zoned),
     ("%m/%d/%y %I:%M:%S%.f %p", "mm/dd/yy hh:mm:ss am/pm", Part::Local),
     ("%d/%m/%y %I:%M:%S%.f %p", "dd/mm/yy hh:mm:ss am/pm", Part::Local),
     ("%d/%m/%y %H:%M:%S%.f", "dd/mm/yy hh:mm:ss", Part::Local),
@@ -68,6 +74,7 @@ const FORMS: [(&str, &str, Part); 39] = [
     ("%d/%m/%y", "dd/mm/yy", Part::Day),
     ("%m/%d/%y", "mm/dd/yy", Part::Day),
     ("%y-%m-%d", "yy-mm-dd", Part::Day),
+    ("", elapsed::MINUTES, Part::Minutes),
     ("", elapsed::NAME, Part::Elapsed),
 ];
 
@@ -124,7 +131,8 @@ impl DateForm {
                 let time = parsed()?.to_naive_time().ok()?;
                 time.signed_duration_since(chrono::NaiveTime::MIN).num_nanoseconds()
             }
-            Part::Elapsed => elapsed::elapsed_ns(text),
+            Part::Elapsed => elapsed::elapsed_ns(text).filter(|_| !elapsed::is_minutes(text)),
+            Part::Minutes => elapsed::elapsed_ns(text).filter(|_| elapsed::is_minutes(text)),
         }
     }
 }
@@ -174,8 +182,18 @@ fn plain(text: &str) -> Option<String> {
         _ => c,
     });
     let plain: String = plain.collect();
-    Some(plain.strip_suffix(" UTC").map(|time| format!("{time}Z")).unwrap_or(plain))
+    let zoned = |zone: &str| {
+        let (name, offset) = zone.split_once(' ')?;
+        let (time, own) = plain.rsplit_once(' ')?;
+        own.eq_ignore_ascii_case(name).then(|| format!("{time}{offset}"))
+    };
+    Some(ZONES.split(',').find_map(zoned).unwrap_or(plain))
 }
+
+/// What clocks call their zones, and how far these are from UTC, each as it is most often meant; of those that are meant as often
+/// otherwise (CST, IST, BST) none.
+const ZONES: &str = "UTC Z,GMT Z,WET Z,WEST +01:00,CET +01:00,MEZ +01:00,CEST +02:00,MESZ +02:00,EET +02:00,EEST +03:00,MSK +03:00,\
+    JST +09:00,KST +09:00,EST -05:00,EDT -04:00,CDT -05:00,MST -07:00,MDT -06:00,PST -08:00,PDT -07:00";
 
 /// With so many digits behind the seconds; `None` if there are more.
 fn padded(plain: &str, most: usize) -> Option<String> {
@@ -250,6 +268,9 @@ mod tests {
             "2025-06-15T17:06:40.02+02:00",
             "2025-06-15T17:06:40.02+0200",
             "2025-06-15 15:06:40.020 UTC",
+            "2025-06-15 17:06:40.020 CEST",
+            "2025-06-15T11:06:40.020 EDT",
+            "15.06.2025 17:06:40,020 MESZ",
             "2025/06/15 15:06:40.020",
             "15.06.2025 15:06:40,020",
             "15.06.2025 15:06:40:020",

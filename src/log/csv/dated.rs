@@ -17,7 +17,8 @@ impl Look<'_> {
     pub(super) fn dates(&self) -> Vec<Found> {
         let is = |column: &usize| {
             let forms = self.forms(*column);
-            !self.labels[*column].is_time && forms.first().is_some_and(|form| form.part != Part::Elapsed)
+            !self.labels[*column].is_time
+                && forms.first().is_some_and(|form| !matches!(form.part, Part::Elapsed | Part::Minutes))
         };
         let columns = (0..self.labels.len()).filter(is);
         columns.filter_map(|column| self.column(column).ok()).filter(Found::steady).collect()

@@ -3,7 +3,15 @@
 use crate::units::{NS_PER_S, whole_ns};
 
 /// For a person.
-pub(super) const NAME: &str = "time passed, as T#1m2s, 0 days 00:01:02 or mm:ss.s";
+pub(super) const NAME: &str = "time passed, as T#1m2s or 0 days 00:01:02";
+
+/// Of minutes and seconds alone.
+pub(super) const MINUTES: &str = "time passed, as mm:ss.s";
+
+/// Whether a span is told in minutes and seconds alone, whose clock may begin again after the hour.
+pub(super) fn is_minutes(text: &str) -> bool {
+    text.bytes().all(|byte| byte.is_ascii_digit() || matches!(byte, b':' | b'.' | b',' | b' '))
+}
 
 /// Units of a span such as `1m2s500ms`, in ns; a name that begins another stands behind it.
 const UNITS: [(&str, f64); 7] =

@@ -82,7 +82,7 @@ pub enum CsvError {
     #[error(
         "no column looks like a time{why}; the columns are {present}; {}",
         if let Some(time) = by_number.first() {
-            let rises = time.strip_prefix("--time ").map(|column| format!(" ({} rises from row to row as a time does)", column.trim_matches('\'')));
+            let rises = time.strip_prefix("--time ").map(|column| format!(" ({} rises from row to row as a time does; which of two columns is the plan is a guess, for the measured one follows it)", column.trim_matches('\'')));
             format!("name columns by their number, such as {}{}", by_number.join(" "), rises.unwrap_or_default())
         } else if why.is_empty() { "say --time COLUMN, or --rate HZ if there is none".to_owned() }
         else { "rows of one instant may be of several joints: call the column that names the joint \"joint\"; else say --rate HZ if a row comes HZ times a second, or --time COLUMN".to_owned() }

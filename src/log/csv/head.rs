@@ -83,6 +83,15 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) ->
                 continue;
             }
         }
+        let fits_names =
+            |(_, cells): &(u64, Vec<String>)| cells.len().abs_diff(dialect.width) <= 1 && are_names(cells);
+        if let [first] = found.sample.as_slice()
+            && !above.iter().any(fits_names)
+            && let Some(cells) = names_beside_numbers(first, &record)
+        {
+            found.sample.clear();
+            above.push((found.first_line, cells));
+        }
         if found.sample.is_empty() {
             found.first_line = line;
         }
@@ -166,6 +175,21 @@ fn is_data(record: &ByteRecord, width: usize) -> bool {
     record.len() == width && !all.is_empty() && (words < numbers || numbers >= 2)
 }
 
+/// The words of a first row that has more of them than numbers, all above numbers of the next row: somebody wrote beside the names.
+fn names_beside_numbers(first: &[Vec<u8>], next: &ByteRecord) -> Option<Vec<String>> {
+    let of = |cell: &[u8]| if says_absent(cell) { Looks::Empty } else { looks(cell) };
+    let is_word = |cell: &&Vec<u8>| of(cell) == Looks::Text;
+    let words = first.iter().filter(is_word).count();
+    let numbers = first.iter().filter(|cell| !matches!(of(cell), Looks::Text | Looks::Empty)).count();
+    let above_numbers = first
+        .iter()
+        .zip(next)
+        .all(|(cell, below)| of(cell) != Looks::Text || !matches!(of(below), Looks::Text | Looks::Empty));
+    let name = |cell: &Vec<u8>| if is_word(&cell) { cell_text(cell) } else { String::new() };
+    let names: Vec<String> = first.iter().map(name).collect();
+    (words > numbers.max(1) && numbers > 0 && above_numbers && are_names(&names)).then_some(names)
+}
+
 /// Whether the cells of a row may be the names of columns: several, none a number, no two alike.
 pub(super) fn are_names(cells: &[String]) -> bool {
     let named: Vec<&String> = cells.iter().filter(|cell| !cell.is_empty()).collect();
@@ -246,6 +270,17 @@ mod tests {
             ));
             assert_eq!((head.names[0].as_str(), head.first_line), ("t_s", 2), "{absent}");
         }
+    }
+
+    #[test]
+    fn numbers_that_somebody_wrote_beside_the_names_do_not_cost_the_header() {
+        let head =
+            of("Time (ms),Set (deg),Act (deg),25.4,765.1\n0,0,0,,\n12,5,0.1,,\n24,6,0.2,,\n36,7,0.3,,\n");
+        assert_eq!(head.names[..3], ["Time (ms)", "Set (deg)", "Act (deg)"]);
+        assert_eq!((head.line, head.first_line), (1, 2));
+        // Rows that name what they tell have their words in every row.
+        let long = of("joint,time,kind,value,n\nboom,0.0,set,1,1\nboom,0.1,act,2,2\nboom,0.2,set,2,3\n");
+        assert_eq!((long.names[0].as_str(), long.first_line), ("joint", 2));
     }
 
     #[test]

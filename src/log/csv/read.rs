@@ -117,7 +117,9 @@ pub(super) fn read(
             column.take(&rows);
         }
     }
+    let placed = time.placed(&stamp_ns);
     let absolute = time.settle(&mut stamp_ns);
+    keep(&placed, &mut stamp_ns, &mut columns);
     let outside = drop_outside(&mut stamp_ns, &mut columns);
     let clock = time.columns().first().map_or("", |&column| head.names[column].as_str());
     judge_stamps(clock, stamp_ns.len() as u64, unstamped, outside, unstamped_example, dialect, remarks)?;
@@ -290,15 +292,20 @@ impl Column {
 /// Drops rows that no message can be stamped with; how many.
 fn drop_outside(stamp_ns: &mut Vec<i64>, columns: &mut BTreeMap<usize, Column>) -> u64 {
     const LAST_NS: i64 = i32::MAX as i64 * 1_000_000_000;
-    let keep: Vec<bool> = stamp_ns.iter().map(|ns| (1..LAST_NS).contains(ns)).collect();
-    let dropped = keep.iter().filter(|keep| !**keep).count() as u64;
+    let inside: Vec<bool> = stamp_ns.iter().map(|ns| (1..LAST_NS).contains(ns)).collect();
+    keep(&inside, stamp_ns, columns)
+}
+
+/// Drops the rows that are not to be kept; how many.
+fn keep(kept: &[bool], stamp_ns: &mut Vec<i64>, columns: &mut BTreeMap<usize, Column>) -> u64 {
+    let dropped = kept.iter().filter(|kept| !**kept).count() as u64;
     if dropped == 0 {
         return 0;
     }
-    let mut place = keep.iter();
+    let mut place = kept.iter();
     stamp_ns.retain(|_| place.next().copied().unwrap_or(false));
     for column in columns.values_mut() {
-        let mut place = keep.iter();
+        let mut place = kept.iter();
         column.values.retain(|_| place.next().copied().unwrap_or(false));
         column.numbers = column.values.iter().filter(|value| value.is_finite()).count() as u64;
     }

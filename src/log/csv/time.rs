@@ -3,7 +3,7 @@
 use super::{
     date::{DateForm, Part},
     number::{self, nanoseconds, nanoseconds_after},
-    spread::spread,
+    spread::{complete, spread},
     unit::{Measure, Unit},
 };
 use crate::{
@@ -116,6 +116,14 @@ impl TimeSource {
         }
     }
 
+    /// Which rows have a time of their own: not those of a step that lacks rows, where nothing tells which.
+    pub(super) fn placed(&self, stamp_ns: &[i64]) -> Vec<bool> {
+        match self {
+            Self::Spread { rows, .. } => complete(stamp_ns, *rows),
+            _ => vec![true; stamp_ns.len()],
+        }
+    }
+
     /// Makes stamps increase over midnight where there is no day, and count from a fixed instant
     /// where they count from none; whether they are absolute.
     pub(super) fn settle(&self, stamp_ns: &mut [i64]) -> bool {
@@ -159,7 +167,7 @@ impl TimeSource {
     }
 }
 
-/// Where a counter of 16 or 32 bits begins again: the time goes on there.
+/// Where a counter of 16 or 32 bits, or of minutes without hours, begins again: the time goes on there.
 #[derive(Debug, Clone)]
 pub(super) struct Wraps {
     before_ns: i64,
@@ -181,15 +189,11 @@ impl Wraps {
 
     /// The time of a stamp, as if the counter had more bits.
     pub(super) fn undone(&mut self, source: &TimeSource, ns: i64) -> i64 {
-        let TimeSource::Number { unit, .. } = source else { return ns };
-        let Some(unit_ns) = whole_ns(unit.factor).filter(|one| *one > 0 && unit.zero_ns() == 0) else {
-            return ns;
-        };
+        let Some((unit_ns, spans)) = Self::spans_ns(source) else { return ns };
         let before_ns = std::mem::replace(&mut self.before_ns, ns);
         if ns > before_ns {
             self.steps_ns = [ns.saturating_sub(before_ns), self.steps_ns[0]];
         } else if ns >= 0 && [ns, before_ns].iter().all(|ns| ns % unit_ns == 0) {
-            let spans = [16, 32].map(|bits| unit_ns.saturating_mul(1 << bits));
             let goes_on = |span: &&i64| {
                 let on_ns = ns.saturating_add(**span).saturating_sub(before_ns);
                 before_ns < **span
@@ -204,6 +208,21 @@ impl Wraps {
         ns.saturating_add(self.added_ns)
     }
 
+    /// What the times of a column are whole multiples of, and after what they may begin again, ns.
+    fn spans_ns(source: &TimeSource) -> Option<(i64, [i64; 2])> {
+        match source {
+            TimeSource::Number { unit, .. } => {
+                let unit_ns = whole_ns(unit.factor).filter(|one| *one > 0 && unit.zero_ns() == 0)?;
+                Some((unit_ns, [16, 32].map(|bits| unit_ns.saturating_mul(1 << bits))))
+            }
+            // Tables that show the time of a day as mm:ss.s.
+            TimeSource::Date { form, .. } if form.part == Part::Minutes => Some((1, [Self::HOUR_NS; 2])),
+            _ => None,
+        }
+    }
+
+    const HOUR_NS: i64 = 3_600_000_000_000;
+
     /// The same with nothing counted.
     pub(super) fn going_on(&self) -> Self {
         Self { count: 0, ..self.clone() }
@@ -211,7 +230,8 @@ impl Wraps {
 
     /// Says what was undone.
     pub(super) fn remark(&self, remarks: &mut Remarks) {
-        let message = "places where the counter of the clock has all of its bits full and begins again; the time goes on there";
+        let message =
+            "places where the clock, its bits full or its hour over, begins again; the time goes on there";
         remarks.add(Code::ClockJump, self.count, message);
     }
 }
@@ -250,5 +270,16 @@ mod tests {
         assert_eq!(steps("ms", 16, (1 << 16) - 55), (true, 1));
         assert_eq!(steps("ms", 20, (1 << 20) - 55), (false, 0));
         assert_eq!(steps("s", 32, 0), (true, 0));
+    }
+
+    #[test]
+    fn minutes_without_hours_go_on_after_the_hour_and_a_run_that_begins_again_does_not() {
+        let cells = ["59:59.8", "59:59.9", "00:00.0", "00:00.1", "00:09.0", "00:00.0"];
+        let form = DateForm::fitting(&cells.iter().map(|cell| cell.as_bytes())).pop().unwrap();
+        let source = TimeSource::Date { column: 0, form: form.clone() };
+        let mut wraps = Wraps::default();
+        let ns = cells.map(|cell| wraps.undone(&source, form.ns(cell.as_bytes()).unwrap()));
+        assert_eq!(ns.map(|ns| ns / 100_000_000), [35_998, 35_999, 36_000, 36_001, 36_090, 36_000]);
+        assert_eq!(wraps.count, 1);
     }
 }

@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::{csv::AngleUnit, read::recording::Recording};
 use crate::{
     atomic_file::AtomicError,
-    math::range,
+    math::{median, range},
     series::{JointKind, Track, align},
     units::{DEGREE_RAD, nanoseconds, seconds_since},
 };
@@ -55,11 +55,43 @@ struct Samples {
     values: Vec<f64>,
 }
 
+/// Runs that follow one another without a gap stand so far apart, s, and so many steps: more than a reader takes for one run.
+const APART_S: f64 = 2.0;
+const APART_STEPS: f64 = 20.0;
+
+/// Where a run begins without a gap, as where the clock of the log went back, s, and how far it is to stand from the one before.
+fn seams_s(recording: &Recording) -> Vec<[f64; 2]> {
+    let mut seams_s: Vec<[f64; 2]> = Vec::new();
+    for track in recording.measured.tracks.iter().chain(&recording.planned.tracks) {
+        let t_s = track.t_s();
+        let step_s = median(t_s.windows(2).map(|two| two[1] - two[0]).collect());
+        for segment in track.segments().iter().skip(1) {
+            let [before_s, from_s] = [t_s[segment.start - 1], t_s[segment.start]];
+            if from_s - before_s > 2.0 * step_s {
+                continue;
+            }
+            let apart_s = APART_S.max(APART_STEPS * step_s);
+            // Signals of one run begin within a step of the slowest.
+            match seams_s.iter_mut().find(|[seam_s, _]| (*seam_s - from_s).abs() < 0.5 * APART_S) {
+                Some(seam) => *seam = [seam[0].min(from_s), seam[1].max(apart_s)],
+                None => seams_s.push([from_s, apart_s]),
+            }
+        }
+    }
+    seams_s
+}
+
 impl RunTable {
     /// Lays out the joints that both plan, or command if there is no plan, and measurement have; all of
     /// one side if there is no other.
     pub fn new(recording: &Recording, unit: AngleUnit) -> Self {
         let epoch_ns = recording.source.epoch_ns;
+        let seams_s = seams_s(recording);
+        let stamp_ns = |t_s: &f64| {
+            let apart_s: f64 =
+                seams_s.iter().filter(|[seam_s, _]| seam_s <= t_s).map(|[_, apart_s]| apart_s).sum();
+            epoch_ns.saturating_add(nanoseconds(t_s + apart_s))
+        };
         let unit_of = |kind| match (kind, unit) {
             (JointKind::Turns, AngleUnit::Radians) => ("rad", 1.0),
             (JointKind::Turns, AngleUnit::Degrees) => ("deg", 1.0 / DEGREE_RAD),
@@ -74,7 +106,7 @@ impl RunTable {
                 let (unit, factor) = unit_of(kind);
                 all.push(Samples {
                     name: format!("{joint}_{what}_{unit}{per}"),
-                    stamp_ns: t_s.iter().map(|&t_s| epoch_ns.saturating_add(nanoseconds(t_s))).collect(),
+                    stamp_ns: t_s.iter().map(stamp_ns).collect(),
                     values: values.iter().map(|value| value * factor).collect(),
                 });
             };

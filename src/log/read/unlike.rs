@@ -1,5 +1,7 @@
 //! Finds joints that were recorded in another frame than their plan: sign, zero, unit or name.
 
+use std::f64::consts::TAU;
+
 use super::{
     alike::{Alike, LEAST_INSTANTS, both, speeds},
     quality::looks_like_degrees,
@@ -43,6 +45,9 @@ const WITH_OWN: f64 = 0.7;
 const LESS: f64 = 0.6;
 /// Plans that move by this share of what is small tell which they are.
 const TELLS: f64 = 0.2;
+
+/// An error of whole turns is one of them within this share of a turn: what a joint lags behind in the mean.
+const A_TURN: f64 = 0.05;
 
 /// A plan that correlates so with the speed of its measurement is one.
 const AS_SPEED: f64 = 0.97;
@@ -211,12 +216,13 @@ fn of_joint<'a>(
         let is_speed = as_speed.is_some_and(|found| {
             found.correlation > AS_SPEED && (SAME_UNIT[0]..=SAME_UNIT[1]).contains(&found.slope)
         });
-        return is_speed.then(|| {
+        let says = || {
             format!(
                 "the plan of {name} runs like the speed of its measurement (and not like its position): is it a measured speed, or \
                  a set value of the speed? --planned names the plan of the position"
             )
-        });
+        };
+        return if is_speed { Some(says()) } else { apart(planned, measured) };
     }
     if !(SAME_UNIT[0]..=SAME_UNIT[1]).contains(&slope) {
         if planned.turns() && [slope, 1.0 / slope].iter().any(|ratio| looks_like_degrees(*ratio)) {
@@ -230,10 +236,36 @@ fn of_joint<'a>(
     // An error that grows with the speed is a lag, and one that grows with the time a drift or a slip.
     let beside = mean_error.abs().min(offset.abs());
     let steady = alike.rms_error < STEADY * mean_error.abs();
+    let turns = mean_error / TAU;
+    if steady && planned.turns() && turns.round().abs() > 0.5 && (turns - turns.round()).abs() < A_TURN {
+        return Some(format!(
+            "{name} was measured {} beside its plan all the time, whole turns: does its angle wrap? --continuous {} makes it \
+             one without steps",
+            size(mean_error.abs()),
+            shell_word(name)
+        ));
+    }
     (steady && beside > FOLLOWS * motion).then(|| {
         format!(
             "{name} was measured {} beside its plan all the time: is the zero another?",
             size(mean_error.abs())
+        )
+    })
+}
+
+/// What is to be said of a joint whose plan and measurement have no position in common.
+fn apart(planned: &Track, measured: &Track) -> Option<String> {
+    let [plan, came] = [planned, measured].map(|track| range(track.position().iter().copied()));
+    let says = |value: f64| planned.kind().says(value);
+    (came[0] > plan[1] || came[1] < plan[0]).then(|| {
+        format!(
+            "{} is planned between {} and {} and measured between {} and {}, and they do not run alike: is one of them another quantity, \
+             as the signal of a lever, or in another unit? --planned and --measured name others",
+            planned.name(),
+            says(plan[0]),
+            says(plan[1]),
+            says(came[0]),
+            says(came[1])
         )
     })
 }
@@ -269,7 +301,9 @@ mod tests {
     fn a_joint_in_another_frame_is_told_with_what_is_wrong() {
         for (boom, told) in [
             ((|t| -plan(t)) as fn(f64) -> f64, "moves against its plan (correlation -1.00)"),
-            (|t| plan(t - 0.4) + 0.2, "beside its plan all the time"),
+            (|t| plan(t - 0.4) + 0.2, "beside its plan all the time: is the zero another?"),
+            (|t| plan(t - 0.1) - TAU, "--continuous boom"),
+            (|t| 7.0 + (0.9 * t).cos(), "is one of them another quantity"),
             (|t| 1e3 * plan(t), "moves 1000.0000 times as far"),
             (|t| 0.01 * plan(t), "moves 0.0100 times as far"),
         ] {

@@ -245,7 +245,9 @@ pub(super) fn plans(comparison: &Comparison) -> String {
         (Some(before), Some(after)) => format!("{before:.2} s before, {after:.2} s after"),
         _ => "duration unknown".to_owned(),
     };
+    let some_joints = comparison.remarks.as_slice().iter().any(|remark| remark.code == Code::UnpairedJoint);
     let left = match comparison.unpaired.len() {
+        0 if some_joints => "every transition of joints that all runs have is paired".to_owned(),
         0 => "every transition is paired".to_owned(),
         1 => "1 transition has no counterpart".to_owned(),
         n => format!("{n} transitions have no counterpart"),

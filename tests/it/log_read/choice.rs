@@ -146,8 +146,7 @@ fn joints_with_a_prefix_on_one_side_are_paired_and_that_is_said() {
 #[test]
 fn files_that_are_no_log_say_what_they_are() {
     for (bytes, found, fix) in [
-        (&b""[..], "nothing", "the file is empty"),
-        (b"#ROSBAG V2.0\n", "23 52 4F 53 42 41 47 20", "rosbags-convert"),
+        (&b"#ROSBAG V2.0\n"[..], "23 52 4F 53 42 41 47 20", "rosbags-convert"),
         (b"MDF     4.10", "4D 44 46 20 20 20 20 20", "asammdf"),
         (b"ULog\x01\x12\x35\x01", "55 4C 6F 67 01 12 35 01", "ulog2csv"),
         (b"PK\x03\x04\x14\0\x06\0", "50 4B 03 04 14 00 06 00", "save the sheet as CSV"),
@@ -162,6 +161,8 @@ fn files_that_are_no_log_say_what_they_are() {
         );
         assert!(message.contains(fix) && message.contains("run.mcap"), "{message}");
     }
+    let empty = read_bytes(b"", &ReadOptions::default()).unwrap_err().to_string();
+    assert!(empty.ends_with("run.mcap is empty: no log and no table is in it"), "{empty}");
     let missing =
         hydrotrace::log::read_recording(&[path("no/such.mcap")], &ReadOptions::default()).unwrap_err();
     assert_eq!(missing.to_string(), "cannot open no/such.mcap");
