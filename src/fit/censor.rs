@@ -55,6 +55,66 @@ const SURELY: f64 = 100.0;
 /// Shortest and longest time over which that is asked, s.
 const KEPT_OVER_S: [f64; 2] = [0.2, 2.0];
 
+/// How much of each limit was asked for: what was sent, or less where the loop makes less of that.
+fn asked(problem: &Problem, x: &[f64], workspace: &mut Workspace) -> [f64; 4] {
+    let mut free = problem.clone();
+    free.shown.limits = [false; 4];
+    let unlimited = fastest(&free, x, workspace);
+    std::array::from_fn(|limit| {
+        let sent = problem.runs.iter().map(|run| run.asked[limit]).fold(0.0, f64::max);
+        unlimited.get(limit).map_or(sent, |speed| sent.min(*speed))
+    })
+}
+
+/// A joint that was asked for less than [`ASKED`] shows its speed limit only by keeping this share of it for so long, s.
+const FLAT: f64 = 0.97;
+const FLAT_S: f64 = 0.5;
+
+/// Which of the speed limits of a model, growing and shrinking, are told as numbers.
+pub(super) fn told(problem: &Problem, x: &[f64], workspace: &mut Workspace) -> [bool; 2] {
+    let (kept, asked) = (sustained(problem, x, problem.shown.limits), asked(problem, x, workspace));
+    [(0, 1.0), (1, -1.0)].map(|(limit, way)| {
+        let value = problem.priors.of(LIMITS + limit).value(x[LIMITS + limit]);
+        let flat = || kept_rad_s(problem.runs, way, FLAT_S, 2) >= FLAT * value;
+        kept[limit] && (asked[limit] > ASKED * value || flat())
+    })
+}
+
+/// Share of the squared tracking error that a fit leaves, from which on speed limits are tried that were hardly asked for.
+const MISSED: f64 = 0.02;
+/// The same of a joint that was asked for so many times its largest speed.
+const MISSED_SHORT: f64 = 5e-4;
+const SHORT: f64 = 1.05;
+
+/// The problem with speed limits, and what fits it of descents from these places at what was `reached`, where much is left without them
+/// and they gain surely: a joint that is asked for little more than it can do is at its limit while it catches up.
+pub(super) fn clipped<'a>(
+    problem: &Problem<'a>,
+    found: &Estimate,
+    reached: [f64; 4],
+    from: impl IntoIterator<Item = Vec<f64>>,
+    workspace: &mut Workspace,
+) -> Option<(Problem<'a>, Estimate)> {
+    let asked = |way: usize| problem.runs.iter().map(|run| run.asked[way]).fold(0.0, f64::max);
+    let short = [0, 1].into_iter().any(|way| asked(way) > SHORT * reached[way]);
+    let missed = if short { MISSED_SHORT } else { MISSED };
+    if problem.shown.limits[..2] == [true; 2] || problem.leaves(&found.x, workspace) <= missed {
+        return None;
+    }
+    let mut with = problem.clone();
+    with.shown.limits[..2].fill(true);
+    let at_reached = |mut x: Vec<f64>| {
+        for limit in [LIMITS, LIMITS + 1] {
+            x[limit] = problem.priors.of(limit).place(reached[limit - LIMITS]).max(-1.0);
+        }
+        x
+    };
+    let other = with.search(from.into_iter().map(at_reached), workspace);
+    let cost = problem.cost_at(&found.x, found.scale_rad, workspace);
+    let gain = cost - with.cost_at(&other.x, found.scale_rad, workspace);
+    (2.0 * gain > SURELY).then_some((with, other))
+}
+
 /// Whether the joint kept its speed limits, growing and shrinking, for more than a moment between accelerations that are limited, as
 /// `shown` says; without such accelerations that is not asked.
 pub(super) fn sustained(problem: &Problem, x: &[f64], shown: [bool; 4]) -> [bool; 2] {
@@ -86,9 +146,7 @@ pub(super) fn seen(
     let data = |residuals: &[f64]| residuals.iter().map(|r| cost(r / found.scale_rad)).sum::<f64>();
     problem.residuals(&found.x, workspace, &mut residuals);
     let (with, kappa) = (data(&residuals), inefficiency(&residuals));
-    let mut free = problem.clone();
-    free.shown.limits = [false; 4];
-    let unlimited = fastest(&free, &found.x, workspace);
+    let asked = asked(problem, &found.x, workspace);
     let (mut seen, mut gains) = (problem.shown.limits, [0.0; 4]);
     for limit in (0..problem.shown.limits.len()).filter(|&limit| problem.shown.limits[limit]) {
         let mut without = problem.clone();
@@ -102,11 +160,9 @@ pub(super) fn seen(
         }
         let shows = gains[limit] > THRESHOLD;
         let value = problem.priors.of(LIMITS + limit).value(found.x[LIMITS + limit]);
-        let sent = problem.runs.iter().map(|run| run.asked[limit]).fold(0.0, f64::max);
-        // What the loop makes of what is sent may be slower than that.
-        let asked = unlimited.get(limit).map_or(sent, |speed| sent.min(*speed));
         let highest = value * (QUANTILE * LIMIT[limit]).exp();
-        seen[limit] &= shows && asked > ASKED * value && highest >= reached[limit];
+        let enough = asked[limit] > ASKED * value || limit < 2 && gains[limit] > SURELY;
+        seen[limit] &= shows && enough && highest >= reached[limit];
     }
     for (limit, kept) in sustained(problem, &found.x, seen).into_iter().enumerate() {
         seen[limit] &= kept || gains[limit] > SURELY;

@@ -26,10 +26,14 @@ impl Estimated {
     pub(super) fn check(&self, joint: &str, key: &'static str) -> Result<(), FitError> {
         let ends = self.interval.into_iter().flatten();
         let told = [self.value, self.lower_bound, self.upper_bound].into_iter().flatten().chain(ends);
-        let bad = told.into_iter().find(|found| found.is_nan() || *found < 0.0);
-        bad.map_or(Ok(()), |found| {
-            Err(FitError::Value { joint: joint.to_owned(), key, found, least: 0.0, most: f64::INFINITY })
-        })
+        let value = |found, least, most| FitError::Value { joint: joint.to_owned(), key, found, least, most };
+        if let Some(found) = told.into_iter().find(|found| found.is_nan() || *found < 0.0) {
+            return Err(value(found, 0.0, f64::INFINITY));
+        }
+        let Some(([low, high], found)) = self.interval.zip(self.value) else { return Ok(()) };
+        // Digits of a file.
+        let inside = (low * (1.0 - 1e-6)..=high * (1.0 + 1e-6)).contains(&found);
+        if inside { Ok(()) } else { Err(value(found, low, high)) }
     }
 
     /// The same where another model explains the data as well, with another value: the interval holds both, and where that

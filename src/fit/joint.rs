@@ -2,7 +2,7 @@
 
 use super::{
     Character, Estimated, HeldOut, Oscillation,
-    censor::{ASKED, least_limits, seen, sustained},
+    censor::{ASKED, clipped, least_limits, seen, told},
     edge::edge,
     estimate::{Estimate, Part, Problem, Workspace},
     feed_forward::FeedForward,
@@ -90,6 +90,10 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
             found = problem.search(others.into_iter().chain([found.x]), &mut workspace);
         }
     }
+    let from = starts(&problem).into_iter().chain([found.x.clone()]);
+    if let Some(with) = clipped(&problem, &found, reached, from, &mut workspace) {
+        (problem, found) = with;
+    }
     // What goes may have stood in for what stays.
     for _ in 0..2 {
         problem.inefficiency = problem.measured_inefficiency(&found.x, &mut workspace);
@@ -144,7 +148,8 @@ pub(super) fn joint(named: (&str, JointKind), runs: &[Run]) -> (JointFit, Vec<f6
     knowledge.judge(calm, skill.held_out_r2, skill.unexplained_share(found.scale_rad));
     let nothing = skill.explains_nothing() || stands(runs) || goes_against(runs);
     let skill = if nothing { skill.without_model(&held_out) } else { skill };
-    let joint = report(named, &problem, &found, &knowledge, least, samples, &skill);
+    let told = told(&problem, &found.x, &mut workspace);
+    let joint = report(named, &problem, &found, &knowledge, (least, told), samples, &skill);
     let joint = rivals.iter().fold(joint, JointFit::with_rival);
     let joint = if nothing { joint.without_model() } else { joint };
     let ratios = skill.starts.iter().flatten().filter_map(HeldOutStart::ratio).collect();
@@ -259,7 +264,7 @@ fn report(
     problem: &Problem,
     found: &Estimate,
     knowledge: &Knowledge,
-    least: [f64; 4],
+    (least, told): ([f64; 4], [bool; 2]),
     samples: usize,
     skill: &Skill,
 ) -> JointFit {
@@ -267,7 +272,6 @@ fn report(
     let one = |i: usize, value: f64, discrepancy: f64| {
         knowledge.positive(value, &[(i, problem.priors.of(i).deviation)], discrepancy)
     };
-    let told = sustained(problem, &found.x, problem.shown.limits);
     let limit = |i: usize| {
         let bound = Some(least[i]);
         if problem.shown.limits[i] && told.get(i).is_none_or(|told| *told) {

@@ -63,7 +63,11 @@ pub use shared::{SharedJoint, SharedLimit};
 pub use skill::{MOST_MARGIN, STARTS as MARGIN_STARTS};
 pub use start_error::{PredictedStart, StartErrorPredictor};
 
-use crate::{series::JointKind, threads, units::DEGREE_RAD};
+use crate::{
+    series::{JointKind, Track},
+    threads,
+    units::DEGREE_RAD,
+};
 use run::{Run, runs, sparse_s};
 
 /// A joint that is sent less far than this cannot be fitted, rad.
@@ -108,6 +112,31 @@ impl Fit {
     }
 }
 
+/// The logs, that with the largest error first and equals by what they hold, each with its place among those given: what is found must not
+/// depend on that.
+fn ordered<'a>(logs: &[Observation<'a>]) -> (Vec<usize>, Vec<Observation<'a>>) {
+    fn held<'b>(log: &'b Observation) -> impl Iterator<Item = u64> + use<'b> {
+        let tracks = log.measured.tracks.iter().chain(&log.sent.tracks);
+        tracks.flat_map(|track| track.position().iter().map(|value| value.to_bits()))
+    }
+    let off = |log: &Observation| -> f64 {
+        let of = |came: &Track| {
+            let (sent, mut cursor) = (log.sent.track(came.name())?, 0);
+            let squares = came.t_s().iter().zip(came.position());
+            let mean = squares
+                .map(|(t_s, q)| (q - sent.held_after(&mut cursor, *t_s).position).powi(2))
+                .sum::<f64>()
+                / came.len().max(1) as f64;
+            Some(mean)
+        };
+        log.measured.tracks.iter().filter_map(of).sum()
+    };
+    let mut logs: Vec<(usize, Observation<'a>, f64)> =
+        logs.iter().enumerate().map(|(place, log)| (place, *log, off(log))).collect();
+    logs.sort_by(|(_, a, a_off), (_, b, b_off)| b_off.total_cmp(a_off).then_with(|| held(a).cmp(held(b))));
+    logs.into_iter().map(|(place, log, _)| (place, log)).unzip()
+}
+
 /// The same, with prediction beside measurement where it was held out of the fit: 450 s of each joint's motion at most.
 ///
 /// # Errors
@@ -123,13 +152,15 @@ pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), Fit
             }
         }
     }
+    let (given, logs) = ordered(logs);
     let of = |(name, kind): &(&str, JointKind)| -> Vec<Run> {
-        let of_log = |(log, seen): (usize, &Observation)| {
+        let of_log = |(log, seen): (&usize, &Observation)| {
             let both = [seen.sent.track(name)?, seen.measured.track(name)?];
             let runs = both.iter().all(|track| track.kind() == *kind).then(|| runs(both[0], both[1]))?;
+            let log = *log;
             Some(runs.into_iter().map(move |run| Run { log, ..run }))
         };
-        logs.iter().enumerate().filter_map(of_log).flatten().collect()
+        given.iter().zip(&logs).filter_map(of_log).flatten().collect()
     };
     let fitted = threads::mapped(
         &names,
@@ -142,7 +173,8 @@ pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), Fit
                 LeftOut { name: name.to_owned(), kind, travel_rad, least_travel_rad: LEAST_TRAVEL_RAD };
             moves
                 .then(|| {
-                    let (mut joint, ratios, held_out) = joint::joint((name, kind), &runs);
+                    let (mut joint, ratios, mut held_out) = joint::joint((name, kind), &runs);
+                    held_out.sort_by_key(|stretch| stretch.log);
                     let signals = logs.iter().filter_map(|log| {
                         let valve = log.valve.iter().find(|signal| signal.name() == name)?;
                         Some((valve, log.measured.track(name)?))
@@ -178,7 +210,7 @@ pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), Fit
     }
     let named: Vec<(String, JointKind)> =
         joints.iter().map(|joint| (joint.name.clone(), joint.kind)).collect();
-    let shared = shared::shared(&named, logs);
+    let shared = shared::shared(&named, &logs);
     for sharing in shared.iter().flat_map(|shared| &shared.joints) {
         for joint in joints.iter_mut().filter(|joint| joint.name == sharing.name) {
             joint.makes_alone(sharing.alone_rad_s);

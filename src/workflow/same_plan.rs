@@ -79,7 +79,12 @@ pub(super) fn breaks_off_after_s(plan: &Series, other: &Series) -> Result<Option
 
 /// How far one is ahead of a plan of equal samples, s: the shift of least squares.
 pub(super) fn ahead_s(planned: &Series, plan: &Series) -> f64 {
-    let (mut along, mut square) = (0.0, 0.0);
+    ahead(planned, plan).0
+}
+
+/// The same, with the share of the squares of what it is off by that this shift explains.
+pub(super) fn ahead(planned: &Series, plan: &Series) -> (f64, f64) {
+    let (mut along, mut square, mut off) = (0.0, 0.0, 0.0);
     for track in &plan.tracks {
         let Some(other) = planned.track(track.name()) else { continue };
         let steps = track.t_s().windows(2).zip(track.position().windows(2));
@@ -87,9 +92,10 @@ pub(super) fn ahead_s(planned: &Series, plan: &Series) -> f64 {
             let speed = (position[1] - position[0]) / (t_s[1] - t_s[0]);
             along += speed * (other - position[0]);
             square += speed * speed;
+            off += (other - position[0]).powi(2);
         }
     }
-    if square > 0.0 { along / square } else { 0.0 }
+    if square > 0.0 && off > 0.0 { (along / square, along * along / (square * off)) } else { (0.0, 0.0) }
 }
 
 /// Whether no angle differs by more than stamps do that are a little early or late.

@@ -11,6 +11,7 @@ use super::{
     doubts,
     failure::FleetFailure,
     once::{Logged, is_gone, one_a_run},
+    other_joints,
     renamed::as_one,
     run::Run,
     sources::changed_ns,
@@ -172,6 +173,7 @@ impl History {
         let index: BTreeMap<String, usize> =
             history.runs.iter().enumerate().map(|(k, run)| (run.id.clone(), k)).collect();
         as_one(&history.runs, [&mut starts, &mut lags], &mut history.remarks);
+        other_joints::as_one(&history.runs, [&mut starts, &mut lags], &mut history.remarks);
         history.joints = lags.iter().filter_map(|row| row[2].as_text().map(str::to_owned)).collect();
         history.check_joint(filter)?;
         let joint =
@@ -234,7 +236,14 @@ impl History {
     fn take_starts(&mut self, rows: &[Vec<Cell>], index: &BTreeMap<String, usize>) {
         let run = |row: &Vec<Cell>| index.get(row[0].as_text()?).copied();
         let mut first_s: BTreeMap<usize, f64> = BTreeMap::new();
-        for row in rows {
+        // Joints that some runs do not log say nothing of when a run begins.
+        let of_all = other_joints::of_all_runs(rows);
+        let counts = |row: &&Vec<Cell>| {
+            let joints =
+                row[1].as_text().and_then(|plan| of_all.get(plan)).filter(|joints| !joints.is_empty());
+            joints.is_none_or(|joints| row[2].as_text().is_some_and(|joint| joints.contains(joint)))
+        };
+        for row in rows.iter().filter(counts) {
             if let (Some(run), Some(at_s)) = (run(row), row[5].as_real()) {
                 first_s.entry(run).and_modify(|first_s| *first_s = first_s.min(at_s)).or_insert(at_s);
             }

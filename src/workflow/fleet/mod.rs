@@ -29,6 +29,7 @@ mod map;
 mod note;
 mod once;
 mod one_way;
+mod other_joints;
 mod renamed;
 mod run;
 mod scan;

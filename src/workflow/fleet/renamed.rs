@@ -11,16 +11,16 @@ use crate::{
 };
 
 /// Starts of one plan lie so near to one another in two runs, counted from the first start, s.
-const SAME_ONSET_S: f64 = 0.05;
+pub(super) const SAME_ONSET_S: f64 = 0.05;
 
 /// Where rows of starts and of joints name their run.
-const RUN: usize = 0;
+pub(super) const RUN: usize = 0;
 /// Where they name their plan.
-const PLAN: usize = 1;
+pub(super) const PLAN: usize = 1;
 /// Where they name their joint.
-const JOINT: usize = 2;
+pub(super) const JOINT: usize = 2;
 /// Where the number of a start within its joint stands.
-const INDEX: usize = 4;
+pub(super) const INDEX: usize = 4;
 /// Where the instant of a start stands.
 const ONSET: usize = 5;
 /// Where the direction of a start stands.
@@ -30,7 +30,7 @@ const DIRECTION: usize = 9;
 type Renamed = BTreeMap<(String, String), String>;
 
 /// Each start of a plan by joint and number: its direction, and how long after the first one it lies, s.
-type Shape = BTreeMap<(String, i64), (i64, f64)>;
+pub(super) type Shape = BTreeMap<(String, i64), (i64, f64)>;
 
 /// The same of each run.
 type Told = BTreeMap<(String, i64), (i64, Vec<f64>)>;
@@ -110,7 +110,7 @@ fn renamed(machines: &BTreeMap<&str, &str>, tables: [&Vec<Vec<Cell>>; 2], remark
 }
 
 /// What the starts of each plan are like, in the middle of its runs.
-fn shapes(starts: &[Vec<Cell>]) -> BTreeMap<String, Shape> {
+pub(super) fn shapes(starts: &[Vec<Cell>]) -> BTreeMap<String, Shape> {
     let mut first_s: BTreeMap<&str, f64> = BTreeMap::new();
     for row in starts {
         if let Some((run, at_s)) = row[RUN].as_text().zip(row[ONSET].as_real()) {

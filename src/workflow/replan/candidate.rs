@@ -16,6 +16,9 @@ use crate::{
 /// A new timing must be expected to lower the sum of all peaks by this share; otherwise the proven one stays.
 const WORTH: f64 = 0.02;
 
+/// The same where only a part of the correction is sent: the rest of it gains more, and gives up what this run tells of its own timing.
+const WORTH_OF_A_PART: f64 = 0.1;
+
 /// A plan under the limits of the search, where it is not the last one, and its samples.
 pub(super) type Sampled = (Option<PlanEvaluation>, Series);
 
@@ -112,7 +115,8 @@ impl Maker<'_> {
         let of =
             |(): &mut (), (new, plan): &Sampled| self.candidate(history, decision, new.clone(), plan.clone());
         let made = threads::mapped(options, || (), of);
-        choose(made.into_iter().collect::<Result<_, _>>()?).ok_or_else(|| ReplanFailure::AtRest {
+        let worth = if self.inputs.learning.gain < 1.0 { WORTH_OF_A_PART } else { WORTH };
+        choose(made.into_iter().collect::<Result<_, _>>()?, worth).ok_or_else(|| ReplanFailure::AtRest {
             path: self.inputs.logs.last().cloned().unwrap_or_default(),
         })
     }
@@ -159,6 +163,7 @@ impl Maker<'_> {
         let newest = newest + 1 == trials.len();
         let of = |one: &JointCommand| OfRuns {
             spread_rad: one.spread_rad,
+            tried: kept && times < trials.len(),
             held: one.held,
             by_chance: one.by_chance.filter(|_| newest),
         };
@@ -205,10 +210,10 @@ pub(super) fn asks_too_much(fit: &Fit, plan: &Series) -> bool {
 }
 
 /// The first unless another is expected to be better by enough.
-fn choose(made: Vec<Candidate>) -> Option<Candidate> {
+fn choose(made: Vec<Candidate>, worth: f64) -> Option<Candidate> {
     let mut all = made.into_iter();
     let first = all.next()?;
-    let most = (1.0 - WORTH) * first.predicted.sum_of_peaks_rad;
+    let most = (1.0 - worth) * first.predicted.sum_of_peaks_rad;
     let better = all.min_by(|a, b| a.predicted.sum_of_peaks_rad.total_cmp(&b.predicted.sum_of_peaks_rad));
     Some(better.filter(|better| better.predicted.sum_of_peaks_rad < most).unwrap_or(first))
 }

@@ -42,6 +42,12 @@ pub enum ReplanFailure {
         path.display()
     )]
     NoTask { path: PathBuf },
+    #[error(
+        "no timing of the task is found within the time, jerk and power of the plan in {}, and that is no plan of the task: {missed}; \
+         allow more with --max-time-growth-percent and --max-cost-growth-percent, or plan the task anew with hydrotrace plan",
+        path.display()
+    )]
+    NoWay { path: PathBuf, missed: String },
     #[error(transparent)]
     IdleBound(#[from] IdleBound),
     #[error(
@@ -117,7 +123,8 @@ pub enum ReplanFailure {
     Identifies { path: PathBuf },
     #[error(
         "{}: half of the joints or more do not follow their plan, the error of each is more than half of its motion, so \
-         no command is made; `hydrotrace report` of the log says where sign, zero, unit or name look wrong",
+         no command is made; `hydrotrace report` of the log says where sign, zero, unit or name look wrong, and whether its plan is \
+         faster than the joints go: then a slower one is needed (hydrotrace replan without --keep-plan, or hydrotrace plan)",
         path.display()
     )]
     Astray { path: PathBuf },

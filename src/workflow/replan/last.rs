@@ -6,6 +6,7 @@ use super::{Inputs, ReplanFailure, samples::sampled};
 use crate::{
     log::Recording,
     plan::{PlanError, PlanEvaluation, Setup, Via},
+    remark::{Code, Remarks},
     series::{Broken, Series, Track, bridged, moving_s},
     spline::Motion,
     units::DEGREE_RAD,
@@ -135,6 +136,14 @@ impl Last {
         self.request.as_ref()?.setup.motion_through(self.times_s.as_ref()?, &self.via).ok()
     }
 
+    /// Says which key points of its task the plan misses, and whether a new one passes them.
+    pub(super) fn remark_elsewhere(&self, anew: bool, remarks: &mut Remarks) {
+        let next = if anew { "the next plan passes it" } else { "nor does the next, for the plan is kept" };
+        for missed in &self.elsewhere {
+            remarks.add(Code::OtherFile, 1, format!("{missed}; {next}"));
+        }
+    }
+
     /// The plan under the limits of a setup, if its times are known.
     pub(super) fn evaluation(&self, setup: &Setup) -> Result<Option<PlanEvaluation>, PlanError> {
         let of = |times_s: &Vec<f64>| PlanEvaluation::through(setup, times_s, &self.via);
@@ -212,19 +221,19 @@ fn check_points(
         let all = instants().map(|t_s| apart(point, t_s));
         all.fold((0, f64::INFINITY), |best, now| if now.1 < best.1 { now } else { best })
     };
-    let missed = (1..setup.template().t_s().len()).filter(|point| !setup.is_free(*point)).filter_map(|point| {
-        let (joint, far) = nearest(point);
-        (far > MISSES_RAD).then(|| {
-            format!(
-                "the plan in {} does not pass key point {} of the task: {} stays {} away from it; the next plan passes \
-                 it",
-                path.display(),
-                point + 1,
-                names.get(joint).map_or("", String::as_str),
-                kind(joint).says(far)
-            )
-        })
-    });
+    let missed =
+        (1..setup.template().t_s().len()).filter(|point| !setup.is_free(*point)).filter_map(|point| {
+            let (joint, far) = nearest(point);
+            (far > MISSES_RAD).then(|| {
+                format!(
+                    "the plan in {} does not pass key point {} of the task: {} stays {} away from it",
+                    path.display(),
+                    point + 1,
+                    names.get(joint).map_or("", String::as_str),
+                    kind(joint).says(far)
+                )
+            })
+        });
     Ok(missed.collect())
 }
 

@@ -14,7 +14,7 @@ use crate::{
     workflow::{
         carried::Carried,
         names::told_apart,
-        same_plan::{ahead_s, cut},
+        same_plan::{ahead, cut},
     },
 };
 
@@ -25,6 +25,8 @@ const ANSWERS: f64 = 0.5;
 const BEHIND_S: f64 = 0.5;
 /// Joints that lead their plan by more were sent their command early, s: no correction asks for that.
 const EARLY_S: f64 = 0.25;
+/// The same that explains at least this share of their error: where corrections ask for what the machine has not, it is off anyhow.
+const SHIFTED: f64 = 0.5;
 /// Plans whose motions differ by less, as a share, may be one.
 const ALIKE: f64 = 0.05;
 /// Plans that move less are not judged, nor motions of one, rad: root mean square about the mean.
@@ -108,7 +110,7 @@ fn unlike_others(
 
 /// What was sent came after its plan.
 fn held_back(run: &Recording) -> Option<(Code, String)> {
-    let by_s = -ahead_of_plan_s(run, &run.command.as_ref()?.series)?;
+    let by_s = -ahead_of_plan(run, &run.command.as_ref()?.series)?.0;
     let why = || {
         format!(
             "what was sent came after its plan, by {by_s:.1} s in the mean of its motion: an override or a pause held it back"
@@ -119,21 +121,21 @@ fn held_back(run: &Recording) -> Option<(Code, String)> {
 
 /// Joints led their plan by far, and what was sent by more: it came too early.
 fn early(run: &Recording) -> Option<(Code, String)> {
-    let sent_s = ahead_of_plan_s(run, &run.command.as_ref()?.series)?;
-    let by_s = ahead_of_plan_s(run, &run.measured)?;
+    let (sent_s, _) = ahead_of_plan(run, &run.command.as_ref()?.series)?;
+    let (by_s, share) = ahead_of_plan(run, &run.measured)?;
     let why = || {
         format!(
             "its joints led their plan by {by_s:.1} s in the mean of its motion: what was sent came before its time"
         )
     };
-    (by_s > EARLY_S && sent_s > by_s).then(|| (Code::OtherTime, why()))
+    (by_s > EARLY_S && sent_s > by_s && share > SHIFTED).then(|| (Code::OtherTime, why()))
 }
 
-/// How far joints of a run are ahead of their plan, s.
-fn ahead_of_plan_s(run: &Recording, series: &Series) -> Option<f64> {
+/// How far joints of a run are ahead of their plan, s, and the share of their error that this explains.
+fn ahead_of_plan(run: &Recording, series: &Series) -> Option<(f64, f64)> {
     let [from_s, to_s] = run.planned.span_s()?;
     let of = |series: &Series| cut(&*bridged(series).ok()?, from_s, to_s).ok();
-    Some(ahead_s(&of(series)?, &of(&run.planned)?))
+    Some(ahead(&of(series)?, &of(&run.planned)?))
 }
 
 /// Runs in which a joint stood, or through one motion, that answers in another one, and, of those before the newest, in the newest.

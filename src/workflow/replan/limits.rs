@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     fit::{Estimated, Fit},
     plan::Setup,
+    remark::{Code, Remarks},
     series::{JointKind, Series, Track},
     spline::{Motion, Quantity},
     task::Task,
@@ -103,6 +104,35 @@ fn tightest(own: f64, fitted: Option<[Estimated; 2]>, asked: Option<f64>) -> (f6
         (None, None, _) => return (own, Origin::Task),
     };
     if found < own { (found, origin) } else { (own, Origin::Task) }
+}
+
+/// Joints whose search is held to the fitted speed of the weaker direction though the other makes this many times as much, and more.
+const STRONGER: f64 = 1.25;
+
+/// Says so.
+pub(super) fn remark_weaker_ways<'a>(
+    fit: &Fit,
+    held: impl IntoIterator<Item = &'a HeldTo>,
+    remarks: &mut Remarks,
+) {
+    let of = |held: &HeldTo| {
+        let joint = fit.joint(&held.joint)?;
+        let limits = [joint.speed_limit_growing_rad_s, joint.speed_limit_shrinking_rad_s];
+        let [up, down] = limits.map(|limit| limit.interval.filter(|_| limit.identified).map(|ends| ends[0]));
+        let (most, way) = if up? > down? { (up?, "growing") } else { (down?, "shrinking") };
+        (held.speed_origin == Origin::Fitted && most > STRONGER * held.speed_rad_s).then(|| {
+            format!(
+                "timings hold {name} to {}/s both ways, the fitted speed of its weaker direction; {way} it makes {}/s: a plan whose times are \
+                 given (hydrotrace plan --times) may use that",
+                held.kind.says(held.speed_rad_s),
+                held.kind.says(most),
+                name = held.joint
+            )
+        })
+    };
+    for message in held.into_iter().filter_map(of) {
+        remarks.add(Code::NotSupported, 1, message);
+    }
 }
 
 /// A new plan is beyond what was shown from this share of it on.

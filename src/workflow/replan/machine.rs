@@ -71,8 +71,8 @@ fn of_another(known: &JointFit, held: &JointFit, file: &Path) -> Option<String> 
     let (was_rad, is_rad) = (was?[0], is?[0]);
     (known.trusted() && is_rad > much(known.kind) && is_rad > OTHER * was_rad).then(|| {
         format!(
-            "the model of {} in {} leaves {} of the peaks in these runs, and {} in those that it was fitted to: it is of another machine, or of \
-             another condition; without --limits the runs themselves are fitted",
+            "the model of {} in {} leaves {} of the peaks in these runs, and {} in those that it was fitted to: it is of another machine, of \
+             another condition, or of runs that asked for less; without --limits the runs themselves are fitted",
             known.name,
             file.display(),
             known.kind.says(is_rad),

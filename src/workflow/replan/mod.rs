@@ -125,13 +125,11 @@ pub fn run(
     {
         remarks.add(Code::Paused, 1, message);
     }
-    for message in &last.elsewhere {
-        remarks.add(Code::OtherFile, 1, message);
-    }
     if inputs.task.is_none() {
         last.carried.remark_others(path, &mut remarks);
     }
     let learns = inputs.precompensate && history.begun() && !inputs.retime;
+    let learns = learns && (inputs.keep_plan || last.elsewhere.is_empty());
     let known = last.plan.tracks.iter().any(|t| fit.joint(t.name()).is_some_and(JointFit::trusted));
     if inputs.precompensate && !known {
         let best = fit.joints.iter().map(|joint| joint.held_out_r2).fold(f64::NEG_INFINITY, f64::max);
@@ -156,13 +154,16 @@ pub fn run(
     }
     let setup = last.request.as_ref().map(|request| &request.setup);
     let maker = Maker { inputs, precompensates, fit: &fit, setup, last: &last };
-    let options = maker.within_shared(candidates(&last, search.as_ref())?);
+    let options = maker.within_shared(candidates(path, &last, search.as_ref())?);
     let (chosen, decision) = decided(&maker, &mut history, &options, learns)?;
     if precompensates && chosen.new.is_some() && chosen.command.is_none() {
         let message = "joints were held back by what they share, so that the run does not tell how they go in a slower plan: the plan \
                        changes without a correction, and its own run tells the next";
         remarks.add(Code::PoorFit, 1, message);
     }
+    last.remark_elsewhere(chosen.new.is_some(), &mut remarks);
+    let felt = search.iter().filter(|search| chosen.new.is_some() || search.front.is_empty());
+    limits::remark_weaker_ways(&fit, felt.flat_map(|search| &search.held), &mut remarks);
     if let Some(message) = goes_on.filter(|_| history.follows) {
         remarks.add(Code::MachineChanged, 1, message);
     }
@@ -272,8 +273,12 @@ fn within_shared(fit: &Fit, setup: &Setup, front: Vec<Timing>) -> Result<Vec<Tim
     Ok(within)
 }
 
-/// Plans to look at with their commands: the last one first.
-fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, ReplanFailure> {
+/// Plans to look at with their commands: the last one first, unless it is one of another task.
+fn candidates(
+    path: &std::path::Path,
+    last: &Last,
+    search: Option<&Search>,
+) -> Result<Vec<Sampled>, ReplanFailure> {
     let (Some(search), Some(request)) = (search, &last.request) else {
         return Ok(vec![(None, last.plan.clone())]);
     };
@@ -282,6 +287,14 @@ fn candidates(last: &Last, search: Option<&Search>) -> Result<Vec<Sampled>, Repl
         Ok((Some(plan.clone()), sampled(&request.setup, &motion)?))
     };
     let others = search.plans.iter().map(sample);
+    if let Some(missed) = last.elsewhere.first() {
+        let (path, missed) = (path.to_owned(), missed.clone());
+        return if search.plans.is_empty() {
+            Err(ReplanFailure::NoWay { path, missed })
+        } else {
+            others.collect()
+        };
+    }
     // A plan whose times are not known is one that was run all the same.
     if search.keeps() || search.evaluation.is_none() || search.plans.is_empty() {
         return std::iter::once(Ok((None, last.plan.clone()))).chain(others).collect();

@@ -90,6 +90,8 @@ pub fn predicted(fit: &Fit, plan: &Series, sent: &Series, rules: &Rules) -> Resu
 pub struct OfRuns {
     /// What comes differently each time, rad.
     pub spread_rad: Option<f64>,
+    /// Whether one of the runs was sent something else than the newest: the spread then holds what the model misses of a change.
+    pub tried: bool,
     /// Where it comes no farther.
     pub held: Option<Stop>,
     /// What came in the newest run alone.
@@ -153,7 +155,7 @@ pub fn promised(
             if changed_rad < SAME_RAD.max(SAME * corrected_rad) { 0.0 } else { changed_rad }
         });
         let times = run.map_or(1, |(.., times)| times);
-        Left::of(fit, name, (changed, times), learnt(name).spread_rad)
+        Left::of(fit, name, (changed, times), learnt(name))
     };
     let (mut pairs, mut responses) = (Vec::new(), Vec::new());
     for track in &plan.tracks {
@@ -219,13 +221,19 @@ impl Left {
         fit: &Fit,
         name: &str,
         (changed_rad, times): (Option<f64>, usize),
-        spread_rad: Option<f64>,
+        OfRuns { spread_rad, tried, .. }: OfRuns,
     ) -> Self {
         let joint = fit.joint(name);
         let [mean_rad, most_rad] = joint.and_then(|joint| joint.unexplained_peak_rad).unwrap_or([0.0; 2]);
         // A joint that is sent what it was sent before is expected to do what it did.
         let again = changed_rad.is_some_and(|changed_rad| changed_rad <= 0.0);
         let [mean_rad, most_rad] = match (spread_rad, changed_rad) {
+            // Runs that were all sent the same tell nothing of what the model misses of a change.
+            (Some(spread_rad), Some(changed_rad)) if !again && !tried => {
+                let [mean, most] = OF_CHANGE.map(|share| share * changed_rad);
+                let [of_new, of_most] = PEAKS_OF_SPREAD.map(|peaks| peaks * spread_rad);
+                [(REPEATED * mean_rad).hypot(mean).hypot(of_new), most_rad.hypot(most).hypot(of_most)]
+            }
             (Some(spread_rad), changed_rad) => {
                 let [mean, most] = OF_CHANGE_AGAIN.map(|share| share * changed_rad.unwrap_or(0.0));
                 let [of_new, of_most] = PEAKS_OF_SPREAD.map(|peaks| peaks * spread_rad);
@@ -262,4 +270,32 @@ fn summary(left: &dyn Fn(&str) -> Left, margin: f64, pairs: &[Pair], rules: &Rul
     let of_kind = |kind| transitions.iter().filter(|t| t.kind == kind).count();
     let kinds = [of_kind(Kind::Start), of_kind(Kind::Reversal)];
     Predicted::of(transitions, kinds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{fit::Observation, math::smooth_step};
+
+    #[test]
+    fn runs_that_were_sent_the_same_do_not_tell_what_a_change_leaves() {
+        let moved = |late_s: f64| {
+            move |t: f64| {
+                0.3 * (smooth_step((t - 2.0 - late_s) / 3.0) - smooth_step((t - 9.0 - late_s) / 3.0))
+            }
+        };
+        let [sent, measured] = [0.0, 0.2].map(|late_s| Series::sampled("boom", 1600, moved(late_s)));
+        let mut fit =
+            crate::fit::fit(&[Observation { sent: &sent, measured: &measured, valve: &[] }]).unwrap();
+        fit.joints[0].unexplained_peak_rad = Some([0.03, 0.05]);
+        let left = |changed_rad: f64, spread_rad: Option<f64>, tried: bool| {
+            Left::of(&fit, "boom", (Some(changed_rad), 2), OfRuns { spread_rad, tried, ..OfRuns::default() })
+        };
+        let [alone, again, tried] = [(None, false), (Some(1e-4), false), (Some(1e-4), true)]
+            .map(|(spread_rad, tried)| left(0.05, spread_rad, tried));
+        assert!(again.mean_rad >= alone.mean_rad && again.most_rad >= alone.most_rad);
+        assert!(tried.mean_rad < 0.1 * again.mean_rad && tried.most_rad < 0.1 * again.most_rad);
+        // What is sent again comes again.
+        assert!(left(0.0, Some(1e-4), false).most_rad < 1e-3);
+    }
 }

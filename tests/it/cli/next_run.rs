@@ -29,6 +29,22 @@ fn a_task_that_begins_elsewhere_is_refused_and_bounds_hold_for_the_next_line() {
 }
 
 #[test]
+fn a_plan_of_another_task_is_no_next_plan_of_this_one() {
+    let folder = with_run();
+    let folder = folder.path();
+    let task = fs::read_to_string(folder.join("task-1.toml")).unwrap();
+    // The joint goes farther in the middle: no longer way, and no plan that is there passes it.
+    fs::write(folder.join("other.toml"), task.replace("J1 = 37.2, J2", "J1 = 33.2, J2")).unwrap();
+    let kept = run_line(folder, "replan run.mcap --task other.toml --keep-plan -o kept.mcap");
+    let said = format!("{}{}", stdout(&kept), stderr(&kept));
+    assert!(said.contains("does not pass key point 2") && said.contains("nor does the next"), "{said}");
+    let next = run_line(folder, "replan run.mcap --task other.toml --evaluations 2000 -o next.mcap");
+    let said = format!("{}{}", stdout(&next), stderr(&next));
+    let passes = said.contains("the next plan passes it") && !said.contains("plan     unchanged");
+    assert!(passes || next.status.code() == Some(1) && said.contains("no plan of the task"), "{said}");
+}
+
+#[test]
 fn a_machine_that_has_changed_is_learnt_anew() {
     let folder = with_run();
     let folder = folder.path();

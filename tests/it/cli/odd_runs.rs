@@ -100,3 +100,37 @@ fn a_plan_too_slow_to_tell_a_lag_from_breaks_no_limit_on_it() {
     let (_, text, _) = said(&hydrotrace(folder.path(), "report run.csv --max-lag-ms 200"));
     assert!(text.contains("nothing to judge") && !text.contains("no lag in the range"), "{text}");
 }
+
+#[test]
+fn runs_that_were_split_stay_split_in_the_table_that_is_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = String::from("t_s,planned_boom_deg,measured_boom_deg\n");
+    for t in (0..2).flat_map(|_| (0..400).map(|k| 0.02 * f64::from(k))) {
+        writeln!(text, "{t:.2},{:.5},{:.5}", plan(t), plan(t - 0.2)).unwrap();
+    }
+    fs::write(folder.path().join("two.csv"), text).unwrap();
+    let (code, ..) = said(&hydrotrace(folder.path(), "export two.csv -o again.csv"));
+    assert_eq!(code, 3);
+    let starts = |log: &str| {
+        let (report, _) = json(folder.path(), &format!("report {log}"));
+        report["transitions"].as_array().unwrap().iter().map(|start| start["onset_delay_s"].clone()).collect()
+    };
+    let [found, again]: [Vec<Value>; 2] = ["two.csv", "again.csv"].map(starts);
+    assert!(found.len() == 2 && again == found, "{found:?} {again:?}");
+}
+
+#[test]
+fn a_second_that_lacks_rows_is_left_out_and_moves_no_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = String::from("t_s,planned_boom_deg,measured_boom_deg\n");
+    for k in (0..1000).filter(|k| !(110..135).contains(k)) {
+        let t = 0.02 * f64::from(k);
+        writeln!(text, "{},{:.5},{:.5}", t.floor(), plan(t), plan(t - 0.2)).unwrap();
+    }
+    fs::write(folder.path().join("run.csv"), text).unwrap();
+    let (report, code) = json(folder.path(), "report run.csv");
+    let said = report["remarks"].to_string();
+    assert!(code == 3 && said.contains("25 rows of steps that lack some are left out"), "{said}");
+    let lag_s = report["joints"][0]["lag_s"].as_f64().unwrap();
+    assert!((lag_s - 0.2).abs() < 0.005, "{lag_s}");
+}
