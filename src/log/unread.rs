@@ -8,7 +8,7 @@ use crate::text::shell_argument;
 pub(super) type Unread = (&'static str, &'static str);
 
 /// The first bytes of each.
-const BINARY: [(&[u8], Unread); 18] = [
+const BINARY: [(&[u8], Unread); 20] = [
     (b"\x89MCAP0\r\n", ("an MCAP log", "`hydrotrace report` reads it as it is")),
     (
         b"SQLite format 3\0",
@@ -55,6 +55,8 @@ const BINARY: [(&[u8], Unread); 18] = [
             "`pip install npTDMS pandas`, then `as_dataframe().to_csv()` makes CSV of it",
         ),
     ),
+    (b"LOGG", CAN),
+    (b";$FILEVERSION=", CAN),
     (b"RRF2", ("a Rerun recording", "give the log that it was made of")),
     (
         b"version https://git-lfs.github.com/spec/v1",
@@ -63,6 +65,12 @@ const BINARY: [(&[u8], Unread); 18] = [
 ];
 
 const MATLAB: Unread = ("a MATLAB file", "`writetimetable` or `writetable` makes CSV of its variables");
+
+const CAN: Unread = (
+    "a trace of a CAN bus",
+    "what its frames hold stands in their DBC: `pip install python-can cantools`, then a line of Python each reads it (`can.LogReader`), \
+     decodes it (`decode_message`) and writes CSV with a column a signal",
+);
 
 const PICKLE: Unread = (
     "a pickle of Python",
@@ -86,7 +94,10 @@ pub(super) fn unread(bytes: &[u8]) -> Option<Unread> {
         Some(byte) => byte.is_ascii_alphabetic() && (has(b"</") || has(b"/>")),
         None => false,
     };
-    binary.or(markup.then_some(MARKUP))
+    // As Vector and `candump` write it.
+    let frames = text.starts_with(b"date ") && (has(b"\nbase hex") || has(b"\nbase dec"))
+        || text.starts_with(b"(") && (has(b") can") || has(b") vcan"));
+    binary.or(markup.then_some(MARKUP)).or(frames.then_some(CAN))
 }
 
 /// As many bytes tell whether tags end.
@@ -111,6 +122,8 @@ mod tests {
             (b"\x80\x04\x95\xd4", "read_pickle"),
             (b"\x89HDF\r\n\x1a\n", "h5py"),
             (b"<!DOCTYPE html>\n", "as CSV"),
+            (b"(1710253385.120000) can0 1A0#D0070000\n", "DBC"),
+            (b"date Tue Mar 12 02:23:05.120 pm 2024\nbase hex  timestamps absolute\n", "DBC"),
             (b"<Rob TYPE=\"KUKA\"><AIPos A1=\"1\"/></Rob>\n", "as CSV"),
         ] {
             assert!(unread(bytes).is_some_and(|(_, said)| said.contains(fix)), "{fix}");

@@ -29,5 +29,5 @@ pub use statistic::{
 };
 pub use step::{Step, step};
 pub use trend::{Trend, begins, false_discovery, theil_sen, trend};
-pub use two_samples::{Difference, difference};
+pub use two_samples::{Difference, difference, pooled_difference};
 pub use whole::whole;

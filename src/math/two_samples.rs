@@ -41,6 +41,25 @@ pub fn difference(
     Some(Difference { value, interval: [value - half, value + half], p: 2.0 * t.cdf(-(value / error).abs()) })
 }
 
+/// Student's t-test of the difference `after - before`, where the values of both sides scatter alike: fewer than three on a side tell their
+/// scatter by those of the other; `None` with fewer than two degrees of freedom, or without any scatter.
+pub fn pooled_difference(before: &[f64], after: &[f64]) -> Option<Difference> {
+    let freedom = (before.len() + after.len()).checked_sub(2)?;
+    if before.is_empty() || after.is_empty() || freedom < 2 {
+        return None;
+    }
+    let of = |values: &[f64]| {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        (mean, values.iter().map(|value| (value - mean).powi(2)).sum::<f64>())
+    };
+    let ((b, squares_b), (a, squares_a)) = (of(before), of(after));
+    let each = 1.0 / before.len() as f64 + 1.0 / after.len() as f64;
+    let error = ((squares_b + squares_a) / freedom as f64 * each).sqrt();
+    let t = StudentsT::new(0.0, 1.0, freedom as f64).ok().filter(|_| error > 0.0 && (a - b).is_finite())?;
+    let (value, half) = (a - b, t.inverse_cdf(0.975) * error);
+    Some(Difference { value, interval: [value - half, value + half], p: 2.0 * t.cdf(-(value / error).abs()) })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,6 +71,15 @@ mod tests {
         assert!((found.p - 0.037_975_036_373_697_51).abs() < 1e-9, "{found:?}");
         assert!((found.interval[0] - 0.200_673_133_965_830_53).abs() < 1e-9, "{found:?}");
         assert!((found.interval[1] - 5.249_326_866_034_169).abs() < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn of_few_on_a_side_it_is_the_pooled_test_of_scipy() {
+        // SciPy's test of equal variances (equal_var=True) of after and before.
+        let found = pooled_difference(&[1.179, 1.034], &[1.376, 1.063, 1.414, 0.972, 1.148, 0.987]).unwrap();
+        assert!((found.p - 0.729_716_234_789_806_2).abs() < 1e-9, "{found:?}");
+        assert_eq!(pooled_difference(&[1.0], &[1.1, 1.2]), None);
+        assert_eq!(pooled_difference(&[1.0; 2], &[1.0; 2]), None);
     }
 
     #[test]

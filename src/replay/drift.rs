@@ -42,16 +42,19 @@ impl RestDrift {
 /// down: where it does, its drift is that of the later halves of the rests.
 pub(super) fn rest_drift(pair: &Pair, rest: &[bool]) -> Option<RestDrift> {
     let rests: Vec<Vec<Part>> = pair.segments.iter().flat_map(|s| rests(pair, rest, s.clone())).collect();
-    let halves = |of: fn(&[Part]) -> &[Part]| -> Vec<Part> {
-        rests.iter().filter(|parts| parts.len() > 1).flat_map(|parts| of(parts)).copied().collect()
+    let halves = |of: fn(&[Part]) -> &[Part]| -> Vec<Vec<Part>> {
+        rests.iter().filter(|parts| parts.len() > 1).map(|parts| of(parts).to_vec()).collect()
     };
-    let first = halves(|parts| &parts[..parts.len() / 2]);
+    let first = halves(|parts| &parts[..parts.len() / 2]).concat();
     let later = halves(|parts| &parts[parts.len().div_ceil(2)..]);
-    let slows = !later.is_empty() && mean(&later).abs() < SLOWS * mean(&first).abs();
-    let parts = if slows { later } else { rests.concat() };
+    let slows = !first.is_empty() && mean(&later.concat()).abs() < SLOWS * mean(&first).abs();
+    let rests = if slows { later } else { rests };
+    let parts = rests.concat();
     let speed = mean(&parts);
     let half = half_interval(&parts.iter().map(|part| vec![part.speed]).collect::<Vec<_>>());
-    let interval = half.map(|half| [speed - half, speed + half]);
+    // A swing may begin each part alike; what drifts is elsewhere in the next one.
+    let between = between(&rests).unwrap_or(speed);
+    let interval = half.map(|half| [between.min(speed - half), between.max(speed + half)]);
     let duration_s = parts.iter().map(|part| part.lasts_s).sum();
     (!parts.is_empty()).then_some(RestDrift { speed, interval, duration_s })
 }
@@ -61,6 +64,19 @@ pub(super) fn rest_drift(pair: &Pair, rest: &[bool]) -> Option<RestDrift> {
 struct Part {
     speed: f64,
     lasts_s: f64,
+    /// Mean of the joint less its plan, and of its instants, s.
+    off: f64,
+    at_s: f64,
+}
+
+/// The speed from the first to the last part of the rests that have several.
+fn between(rests: &[Vec<Part>]) -> Option<f64> {
+    let ends =
+        rests.iter().filter(|parts| parts.len() > 1).filter_map(|parts| parts.first().zip(parts.last()));
+    let (way, time_s) = ends.fold((0.0, 0.0), |(way, time_s), (first, last)| {
+        (way + last.off - first.off, time_s + last.at_s - first.at_s)
+    });
+    (time_s > 0.0).then(|| way / time_s)
 }
 
 fn mean(parts: &[Part]) -> f64 {
@@ -83,7 +99,9 @@ fn rests(pair: &Pair, rest: &[bool], segment: Range<usize>) -> Vec<Vec<Part>> {
         let lasts_s = t_s.last().map_or(0.0, |last_s| last_s - t_s[0]);
         if lasts_s >= 0.5 * PART_S && part.len() >= FEWEST {
             let [came, asked] = [&pair.measured, &pair.planned].map(|x| line(t_s, &x[part.clone()]).slope);
-            let own = Part { speed: came - asked, lasts_s };
+            let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+            let off = mean(&pair.measured[part.clone()]) - mean(&pair.planned[part.clone()]);
+            let own = Part { speed: came - asked, lasts_s, off, at_s: mean(t_s) };
             if let Some(parts) = rests.last_mut() {
                 parts.push(own);
             }
@@ -119,6 +137,8 @@ mod tests {
         assert_eq!(drift(slow, |t| slow(t - 4.0)), None, "a slow plan");
         let swings = |t: f64| 0.5 + 3e-3 * (std::f64::consts::TAU * 0.4 * t).sin();
         assert_eq!(drift(|_| 0.5, swings), None, "a joint that swings");
+        let alike = |t: f64| 0.5 + 5e-3 * (std::f64::consts::TAU * t).sin();
+        assert_eq!(drift(|_| 0.5, alike), None, "a joint that swings as often as parts begin");
         let comes = |t: f64| 0.5 - 0.02 * (-t / 6.0).exp();
         assert_eq!(drift(|_| 0.5, comes), None, "a joint that comes to rest");
     }

@@ -32,7 +32,7 @@ pub(super) struct Joint<'a> {
 pub(super) fn joint<'a>(pair: &'a Pair, rules: &Rules) -> Option<Joint<'a>> {
     let tracking = tracking_error(samples(pair))?;
     let signals = Signals::new(pair, rules);
-    let rest = at_standstill(&pair.t_s, &pair.segments, &signals.planned, rules);
+    let rest = at_standstill(pair, &signals, rules);
     let standing = samples(pair).zip(&rest).filter(|(_, rest)| **rest).map(|(sample, _)| sample);
     let mut moving = vec![false; pair.t_s.len()];
     signals.planned.iter().for_each(|motion| moving[motion.samples.clone()].fill(true));

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Rules, TrackingError, motion::Motion};
+use super::{Rules, TrackingError, signals::Signals};
 use crate::series::Pair;
 
 /// A sample of error: stamp s, planned minus measured rad, time it stands for s.
@@ -74,16 +74,13 @@ fn weighted_quantile(samples: impl Iterator<Item = Sample>, p: f64) -> f64 {
     magnitudes.last().map_or(0.0, |m| m.0)
 }
 
-/// For every sample, whether the plan has been at rest for long enough, in its segment.
-pub(super) fn at_standstill(
-    t_s: &[f64],
-    segments: &[Range<usize>],
-    planned: &[Motion],
-    rules: &Rules,
-) -> Vec<bool> {
+/// For every sample, whether the plan has been at rest for long enough, in its segment: in no motion, and not on a way either that is too
+/// slow to be one.
+pub(super) fn at_standstill(pair: &Pair, signals: &Signals, rules: &Rules) -> Vec<bool> {
+    let t_s = &pair.t_s;
     let mut rest = vec![false; t_s.len()];
-    let mut motions = planned.iter().peekable();
-    for segment in segments {
+    let mut motions = signals.planned.iter().peekable();
+    for segment in &pair.segments {
         let mut since_s = t_s.get(segment.start).copied().unwrap_or(0.0);
         let mut i = segment.start;
         while i < segment.end {
@@ -93,6 +90,10 @@ pub(super) fn at_standstill(
                     i = motion.samples.end;
                     motions.next();
                 }
+                _ if let Some(end) = slow_way(pair, signals, i..segment.end) => {
+                    since_s = t_s[end - 1];
+                    i = end;
+                }
                 _ => {
                     rest[i] = t_s[i] - since_s > rules.standstill_after_s;
                     i += 1;
@@ -101,4 +102,13 @@ pub(super) fn at_standstill(
         }
     }
     rest
+}
+
+/// Where a way of the plan ends that begins with a range of samples, faster than a rest is and as far as a start needs.
+fn slow_way(pair: &Pair, signals: &Signals, range: Range<usize>) -> Option<usize> {
+    let first = range.start;
+    let moves = |k: &usize| signals.planned_rad_s[*k].abs() > signals.thresholds.planned_stop;
+    let end = first + range.take_while(moves).count();
+    let travel = (pair.planned.get(end.checked_sub(1)?)? - pair.planned[first]).abs();
+    (travel >= signals.sizes.min_travel).then_some(end)
 }

@@ -13,6 +13,7 @@ use super::{
     restarts::runs,
     rows::{Rows, writer},
     time::TimeSource,
+    word::{Meaning, words},
 };
 use crate::remark::{Code, Remarks};
 
@@ -176,7 +177,7 @@ fn groups(head: &Head, dialect: Dialect, options: &CsvOptions) -> Option<(Vec<us
     let named = named(options, &head.names);
     let wanted = |column: usize| labels[column].is_joint || named.contains(&column);
     let one_name = times.iter().all(|time| head.names[*time] == head.names[times[0]]);
-    let columns = owned(&labels, &times, wanted, one_name)?;
+    let columns = by_name(head, &times, wanted).or_else(|| owned(&labels, &times, wanted, one_name))?;
     let sources: Vec<Option<TimeSource>> = times.iter().map(|time| Some(of(time)?.source)).collect();
     let ns = |row: &Vec<Vec<u8>>, source: &Option<TimeSource>| {
         let cell = |column: usize| row.get(column).map_or(&[][..], Vec::as_slice);
@@ -202,6 +203,39 @@ fn groups(head: &Head, dialect: Dialect, options: &CsvOptions) -> Option<(Vec<us
     let one_form =
         groups.iter().all(numbers) || groups.iter().all(|group| alike(&group.source, &groups[0].source));
     one_form.then_some((times, groups))
+}
+
+/// The columns of each time where headers tell it: `boom_act_SourceTimestamp` is of `boom_act`, and of two such the first. A time of the row
+/// has none.
+fn by_name(head: &Head, times: &[usize], wanted: impl Fn(usize) -> bool) -> Option<Vec<Vec<usize>>> {
+    let plain = |column: usize| head.names[column].to_lowercase();
+    let signals: Vec<String> = times.iter().map(|time| signal(&plain(*time)).to_owned()).collect();
+    let mut found = vec![Vec::new(); times.len()];
+    for column in (0..head.names.len()).filter(|column| wanted(*column) && !times.contains(column)) {
+        let name = plain(column);
+        let is_of = |signal: &str| {
+            let rest = name.strip_prefix(signal);
+            !signal.is_empty() && rest.is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
+        };
+        let own = signals.iter().enumerate().rev().filter(|(_, signal)| is_of(signal));
+        found[own.max_by_key(|(_, signal)| signal.len())?.0].push(column);
+    }
+    (found.iter().filter(|columns| !columns.is_empty()).count() > 1).then_some(found)
+}
+
+/// What a header in small letters says before its last words, which are of a time; nothing where they are not.
+fn signal(header: &str) -> &str {
+    const OF_TIMES: [&str; 4] = ["source", "server", "utc", "local"];
+    let mut rest = header;
+    while let Some(last) = words(rest).last() {
+        let of_time = last.meaning == Meaning::Time || last.text.ends_with("timestamp");
+        if !of_time && (rest == header || !OF_TIMES.contains(&last.text)) {
+            break;
+        }
+        let ends = rest.rfind(last.text).unwrap_or_default();
+        rest = rest[..ends].trim_end_matches(['_', ' ', '.', '-', '/', ':']);
+    }
+    if rest == header { "" } else { rest }
 }
 
 /// The columns of each time: those behind it, those before it, or those of its side. A time may have none that is wanted,
@@ -281,6 +315,15 @@ mod tests {
         let rows = "05.03.2026 09:15:00,000;1;;\n05.03.2026 09:15:00,250;;;2\n05.03.2026 09:15:01,000;3;;\n\
                     05.03.2026 09:15:01,250;;;4\n";
         assert_eq!(of(day), Some(format!("Time;boom_set_deg;;boom_act_deg\n{rows}")));
+    }
+
+    #[test]
+    fn a_time_is_of_the_signal_that_its_header_names_whatever_stands_beside_it() {
+        let text = "Time,boom_set_deg,boom_set_deg_SourceTimestamp,boom_set_deg_StatusCode,boom_act_deg,boom_act_deg_SourceTimestamp\n\
+                    0.3,1,0.0,0,2,0.05\n0.4,3,0.1,0,4,0.1\n";
+        let expected = ",boom_set_deg,boom_set_deg_SourceTimestamp,boom_set_deg_StatusCode,boom_act_deg,\n\
+                        ,1,0.0,,,\n,,0.05,,2,\n,3,0.1,,4,\n";
+        assert_eq!(of(text).as_deref(), Some(expected));
     }
 
     #[test]

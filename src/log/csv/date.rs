@@ -158,10 +158,16 @@ pub(super) fn names_month(text: &str) -> bool {
 }
 
 /// The same text with a blank between date and time and a point before the fraction, which some
-/// write as a comma, a semicolon or a third colon.
+/// write as a comma, a semicolon or a third colon, or behind the half of the day: `2:23:05 PM;120`.
 fn plain(text: &str) -> Option<String> {
     const LONGEST: usize = 48;
     let text = &*in_figures(text);
+    if let Some((time, ms)) = text.rsplit_once(';')
+        && let Some((time, half)) = time.rsplit_once(' ')
+        && ["am", "pm"].iter().any(|known| half.eq_ignore_ascii_case(known))
+    {
+        return plain(&format!("{time}.{ms} {half}"));
+    }
     let begins = text.starts_with(|c: char| c.is_ascii_digit()) || begins_with_day(text);
     if text.len() > LONGEST || !begins {
         return None;
@@ -324,6 +330,7 @@ mod tests {
         assert_eq!(ns("00:01:00,5"), (60_500_000_000, "hh:mm:ss"));
         assert_eq!(ns("00:01:00;500"), (60_500_000_000, "hh:mm:ss"));
         assert_eq!(ns("12:01:00.5 AM"), (60_500_000_000, "hh:mm:ss am/pm"));
+        assert_eq!(ns("12:01:00 AM;500"), (60_500_000_000, "hh:mm:ss am/pm"));
     }
 
     #[test]

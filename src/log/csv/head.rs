@@ -69,7 +69,7 @@ pub(super) fn read_head(text: &[u8], dialect: Dialect, remarks: &mut Remarks) ->
     while found.sample.len() < SAMPLE_ROWS
         && let Some(line) = rows.next(&mut record)
     {
-        if found.sample.is_empty() && !is_data(&record, dialect.width) {
+        if found.sample.is_empty() && !is_data(&record, dialect.width) && !is_first_event(&record, &above) {
             above.push((line, record.iter().map(cell_text).collect()));
             continue;
         }
@@ -175,6 +175,15 @@ fn is_data(record: &ByteRecord, width: usize) -> bool {
     record.len() == width && !all.is_empty() && (words < numbers || numbers >= 2)
 }
 
+/// Whether a row has a time and below all names one and the same word, as the first events of a historian do: `Pt Created`.
+fn is_first_event(record: &ByteRecord, above: &[(u64, Vec<String>)]) -> bool {
+    let mut cells = record.iter();
+    let timed = cells.next().is_some_and(|cell| !matches!(looks(cell), Looks::Text | Looks::Empty));
+    let Some(word) = cells.next().filter(|word| timed && looks(word) == Looks::Text) else { return false };
+    let named = above.last().is_some_and(|(_, names)| names.len() == record.len() && are_names(names));
+    named && cells.all(|cell| cell == word)
+}
+
 /// The words of a first row that has more of them than numbers, all above numbers of the next row: somebody wrote beside the names.
 fn names_beside_numbers(first: &[Vec<u8>], next: &ByteRecord) -> Option<Vec<String>> {
     let of = |cell: &[u8]| if says_absent(cell) { Looks::Empty } else { looks(cell) };
@@ -270,6 +279,12 @@ mod tests {
             ));
             assert_eq!((head.names[0].as_str(), head.first_line), ("t_s", 2), "{absent}");
         }
+    }
+
+    #[test]
+    fn a_first_row_of_one_word_below_all_names_is_no_header() {
+        let head = of("Time [s],q_set,q_act\n0.00,Pt Created,Pt Created\n0.05,20,19.9\n0.10,20,20\n");
+        assert_eq!((head.names[1].as_str(), head.first_line), ("q_set", 2));
     }
 
     #[test]

@@ -8,11 +8,13 @@ use super::{
 };
 
 /// Headers of columns that say of what a row is.
-pub(super) const NAMES: [&str; 38] = [
+pub(super) const NAMES: [&str; 51] = [
     "joint", "joint_name", "joint name", "jointname", "motor_name", "axis_name", "joints", "name", "signal",
     "signals", "signalname", "variable", "variablename", "varname", "tag", "tagname", "channel", "field",
     "axis", "achse", "gelenk", "kanal", "topic", "metric", "parameter", "tag name", "tag_name", "tagpath",
-    "tag_path", "symbol", "link", "motor", "actuator", "cylinder", "joint_id", "axis_id", "关节", "变量",
+    "tag_path", "symbol", "link", "motor", "actuator", "cylinder", "joint_id", "axis_id", "series", "key",
+    "pen", "point", "pointname", "item", "curve", "trace", "element", "datapoint", "sensor", "path",
+    "nodeid", "关节", "变量",
 ];
 
 /// Rows of more joints are of none.

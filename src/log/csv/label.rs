@@ -120,8 +120,12 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         Some(Measure::AngularSpeed | Measure::LinearSpeed) => Some(Quantity::Velocity),
         _ => quantity,
     };
-    let is_time =
-        timely && matches!(measure, None | Some(Measure::Time)) && (named || !means(Meaning::Foreign));
+    // Of `boom set [deg] Time` the unit is that of the signal.
+    let ends = |text: &str| header.trim_end().ends_with(text);
+    let of_signal = words.last().is_some_and(|word| word.meaning == Meaning::Time && ends(word.text));
+    let timed = of_signal || matches!(measure, None | Some(Measure::Time));
+    let is_time = timely && timed && (named || !means(Meaning::Foreign));
+    let unit = unit.filter(|unit| !is_time || unit.measure == Measure::Time);
     let long = matches!(measure, Some(Measure::Length | Measure::LinearSpeed));
     let fits = long || matches!(measure, None | Some(Measure::Angle | Measure::AngularSpeed));
     let (of_topic, words) = words.split_at(topic(&words));

@@ -108,9 +108,12 @@ fn names(levels: &[&[String]]) -> Option<Vec<String>> {
 fn described(levels: &[&[String]], differ: impl Fn(&[String]) -> bool) -> Option<Vec<String>> {
     let at = levels.iter().rposition(|row| row.iter().all(|cell| !cell.is_empty()) && differ(row))?;
     let (names, below) = (levels[at], &levels[at + 1..]);
-    let unit = |column: usize| {
-        below.iter().find_map(|row| row.get(column).filter(|cell| unit_named(cell).is_some()))
-    };
+    // Beside one that is known an unknown one is a unit, too.
+    let is_unit = |cell: &String| unit_named(cell).is_some();
+    let is_row = |row: &&&[String]| row.iter().any(is_unit);
+    let units = below.iter().find(is_row).copied().unwrap_or_default();
+    let says = |cell: &&String| is_unit(cell) || units[0] != **cell && cell.chars().any(char::is_alphabetic);
+    let unit = |column: usize| units.get(column).filter(says);
     let with_unit = |(column, name): (usize, &String)| match unit(column) {
         Some(unit) if label(name, None).stated.is_none() => {
             format!("{name} [{}]", unit.trim_matches(['[', ']', '(', ')']))
@@ -143,6 +146,8 @@ mod tests {
         assert_eq!(of(&one), Some(format!("\n\nt,boom set,boom act,boom a,boom b\n{ROWS}")));
         let units = format!("t,boom set,boom act,c,d_s\n[s],deg,deg,-,s\nraw,raw,raw,raw,raw\n{ROWS}");
         assert_eq!(of(&units), Some(format!("\n\nt [s],boom set [deg],boom act [deg],c,d_s\n{ROWS}")));
+        let other = format!("t,boom set,boom act,c,d_s\ns,Volt,Volt,-,s\n{ROWS}");
+        assert_eq!(of(&other), Some(format!("\nt [s],boom set [Volt],boom act [Volt],c,d_s\n{ROWS}")));
         let noted = "descriptor,x,a_set,a_act,b\nunit,s,deg,deg,deg\nstart,0,1,2,3\n,1,1,2,3\n";
         let expected = "\ndescriptor,x [s],a_set [deg],a_act [deg],b [deg]\nstart,0,1,2,3\n,1,1,2,3\n";
         assert_eq!(of(noted).as_deref(), Some(expected));

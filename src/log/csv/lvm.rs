@@ -95,12 +95,13 @@ impl Segment {
     /// The names of the columns with their units; comments stand behind them.
     fn names(&self, cells: &[&[u8]]) -> Vec<String> {
         let of_time = self.dimensions.iter().all(|one| one.is_empty() || one == "Time");
-        let mut channels = self.units.iter();
-        let names = cells.iter().map(|cell| cell_text(cell)).filter(|name| name != "Comment");
-        let names = names.map(|name| match name.as_str() {
+        // Units stand above their columns, the first above none.
+        let unit = |at: usize| self.units.get(at.checked_sub(1)?).filter(|unit| unit_named(unit).is_some());
+        let names = cells.iter().map(|cell| cell_text(cell)).enumerate();
+        let names = names.filter(|(_, name)| name != "Comment").map(|(at, name)| match name.as_str() {
             "X_Value" if of_time => SECONDS.to_owned(),
             "X_Value" => name,
-            _ => match channels.next().filter(|unit| unit_named(unit).is_some()) {
+            _ => match unit(at) {
                 Some(unit) => format!("{name} [{unit}]"),
                 None => name,
             },
@@ -160,6 +161,15 @@ mod tests {
             table.starts_with("X_Value\tboom set [mm]\tvalve\n2025-06-15 15:06:41.500000000\t1,5"),
             "{table}"
         );
+    }
+
+    #[test]
+    fn each_of_several_times_has_its_signal_with_its_unit() {
+        let text = "LabVIEW Measurement\t\nSeparator\tTab\nX_Columns\tMulti\n***End_of_Header***\t\nChannels\t2\t\t\n\
+                    Y_Unit_Label\tdeg\t\tmm\nX_Dimension\tTime\t\tTime\n***End_of_Header***\t\t\t\nX_Value\tboom set\tX_Value\ttele set\tComment\n\
+                    0.0\t1.5\t0.0\t2\n";
+        let header = "X_Value [s]\tboom set [deg]\tX_Value [s]\ttele set [mm]";
+        assert_eq!(of(text).unwrap().lines().next(), Some(header));
     }
 
     #[test]

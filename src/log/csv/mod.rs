@@ -54,6 +54,7 @@ mod offered;
 mod only;
 mod options;
 mod order;
+mod packed;
 mod pairing;
 mod printed;
 mod read;
@@ -217,6 +218,7 @@ fn read_table(
     let text = only::of_one(name, text, options)?;
     let text = judged::without_bad(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
     let text = doubled::once(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
+    let text = packed::unpacked(name, &text, options).map_or(text, Cow::Owned);
     let text = unpadded::padded(name, &text, options, &mut remarks).map_or(text, Cow::Owned);
     let (text, form, _) = in_one_form(name, text, options, &mut remarks);
     let before = remarks.clone();

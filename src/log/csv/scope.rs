@@ -145,14 +145,15 @@ fn names(properties: &[Property<'_>], clocks: &[usize], width: usize, remarks: &
         let word = one.key.to_lowercase();
         let plain = if word.contains("offset") { 0.0 } else { 1.0 };
         let other = |at: usize| {
-            let value = one.cells.get(at).and_then(|cell| number(cell, false));
+            let value = one.cells.get(at).and_then(|cell| value(cell));
             value.is_some_and(|value| value.to_bits() != f64::to_bits(plain))
         };
-        ["scalefactor", "offset"].contains(&word.as_str()) && signals().any(other)
+        ["scalefactor", "offset"].contains(&word.trim_start_matches("unit ")) && signals().any(other)
     });
     for one in scaled {
         let message = format!(
-            "row {:?} above the numbers gives other values than none; the numbers are read as they stand",
+            "row {:?} above the numbers scales or moves them, and no row says whether that is done: they are read as they stand; else say \
+             --planned JOINT=FACTOR*COLUMN and --measured",
             one.key
         );
         remarks.add(Code::Guessed, 1, message);

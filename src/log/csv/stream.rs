@@ -10,7 +10,7 @@ use super::{
     by_rows,
     decimal_mark::DecimalMark,
     expression,
-    judged::Judge,
+    judged::{self, Judges, Verdict},
     live_clock::LiveClock,
     number::number,
     only::{self, Only},
@@ -49,7 +49,7 @@ pub struct TableStream {
     ends: Ends,
     /// A header with other columns came: what is below it is not read.
     over: bool,
-    judge: Option<Judge>,
+    judges: Judges,
     mark: DecimalMark,
 }
 
@@ -62,7 +62,7 @@ struct Counts {
     unstamped: u64,
     bad_cells: u64,
     others: u64,
-    called_bad: u64,
+    called_bad: [u64; 2],
 }
 
 impl TableStream {
@@ -82,7 +82,7 @@ impl TableStream {
         };
         by_rows(name, &text, options)?;
         let form = Form::of(name, &text, options, &mut remarks)?;
-        let judge = Judge::of(&form.head);
+        let judges = Judges::of(&form.head);
         let (run, units) = form.read(name, &text, remarks)?;
         let mut run = run.given(options.given());
         // The first rows are counted with all others.
@@ -106,7 +106,7 @@ impl TableStream {
             counts: Counts::default(),
             ends: Ends::default(),
             over: false,
-            judge,
+            judges,
             mark,
         })
     }
@@ -220,10 +220,19 @@ impl TableStream {
             self.counts.others += 1;
             return;
         }
-        if self.judge.as_ref().is_some_and(|judge| judge.is_bad(record)) {
-            self.counts.called_bad += 1;
-            return;
-        }
+        let emptied;
+        let record = match self.judges.says(record) {
+            Verdict::Good => record,
+            Verdict::Bad => {
+                self.counts.called_bad[0] += 1;
+                return;
+            }
+            Verdict::BadCells(cells) => {
+                self.counts.called_bad[1] += cells.len() as u64;
+                emptied = judged::emptied(record, &cells);
+                &emptied
+            }
+        };
         let cell = |column: usize| record.get(column).unwrap_or_default();
         self.mark.settle(&mut self.form, record);
         self.mark.note(&self.form, record);
@@ -273,9 +282,7 @@ impl TableStream {
         );
         let message = "rows above the header, whose columns cannot be told; left out";
         remarks.add(Code::UndecodableMessage, above, message);
-        if let Some(judge) = &self.judge {
-            judge.remark(called_bad, &mut remarks);
-        }
+        self.judges.remark(called_bad, &mut remarks);
         self.mark.remark(&mut remarks);
         let message = "last row, which breaks off in a number: its sender was stopped there; left out";
         remarks.add(Code::NotClosed, cut, message);

@@ -164,8 +164,9 @@ impl Unit {
 
 /// The unit that a text names, if it is one.
 pub(super) fn parse_unit(text: &str) -> Option<Unit> {
-    let text =
-        text.trim().trim_matches(['[', ']', '(', ')']).trim().to_lowercase().replace(['°', 'º'], "deg");
+    let text = text.trim().trim_matches(['[', ']', '(', ')']).trim().to_lowercase();
+    // The sign in UTF-8 that was read as an older encoding.
+    let text = text.replace("â°", "°").replace(['°', 'º'], "deg");
     let known = UNITS.iter().find(|(spellings, _)| spellings.contains(&text.as_str())).map(|(_, unit)| *unit);
     let other = || OTHERS.iter().find(|other| **other == text).map(|name| unit(name, Measure::Other, 1.0));
     // Values that are so many times the unit.

@@ -120,10 +120,18 @@ fn findings(report: &Report) -> Vec<String> {
 }
 
 /// A joint that first goes the other way.
-fn sinks(Backward { joint, kind, count: [count, starts], most, at_s }: &Backward) -> String {
+fn sinks(Backward { joint, kind, count: [count, starts], most, at_s, swings }: &Backward) -> String {
+    let why = match swings {
+        None => "That is no dead band: the load sinks before it is held (counterbalance or load-holding valve, leak, trapped pressure)."
+            .to_owned(),
+        Some(deviation) => format!(
+            "It moves so while its plan rests, too (standard deviation {}): its loop swings slowly, or it does not come to rest, and the \
+             delays of its starts are those of that motion.",
+            position(*kind, *deviation)
+        ),
+    };
     format!(
-        "{joint} goes against its plan before it starts, in {count} of {}: by {} at most, where it is to start at {at_s:.2} s. That is no \
-         dead band: the load sinks before it is held (counterbalance or load-holding valve, leak, trapped pressure).",
+        "{joint} goes against its plan before it starts, in {count} of {}: by {} at most, where it is to start at {at_s:.2} s. {why}",
         counted(*starts, "timed start"),
         position(*kind, *most)
     )

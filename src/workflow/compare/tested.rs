@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    math::{difference, half_interval, signed_rank},
+    math::{difference, half_interval, pooled_difference, signed_rank},
     replay::Rules,
 };
 
@@ -36,9 +36,10 @@ pub(super) struct Tested {
     pub(super) verdict: Verdict,
 }
 
-/// By Welch's test of the means of the runs, before and after; `None` for fewer than three a side.
+/// By Welch's test of the means of the runs, before and after; of fewer than three on a side by their common scatter; `None` for fewer
+/// than four in all.
 pub(super) fn by_runs([before, after]: &[Vec<f64>; 2], rules: &Rules) -> Option<Tested> {
-    let found = difference(before, after, (0.0, 0.0, 0.0))?;
+    let found = difference(before, after, (0.0, 0.0, 0.0)).or_else(|| pooled_difference(before, after))?;
     let verdict = match (found.p < rules.significance, found.value < 0.0) {
         (false, _) => Verdict::NotShown,
         (true, true) => Verdict::Smaller,

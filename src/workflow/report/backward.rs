@@ -10,6 +10,8 @@ use crate::{
 /// What counts, by the band in which an error is settled and by standard deviations of the noise.
 const BANDS: f64 = 3.0;
 const SIGMAS: f64 = 8.0;
+/// A joint that moves by this share of it while its plan rests, as a standard deviation, does so all the time: no load sinks then alone.
+const AT_REST: f64 = 0.5;
 
 /// How a joint first goes the other way.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +26,8 @@ pub struct Backward {
     pub most: f64,
     /// When that start is planned, s.
     pub at_s: f64,
+    /// Standard deviation while its plan rests, rad or m, if it moves then, too.
+    pub swings: Option<f64>,
 }
 
 impl Report {
@@ -45,8 +49,12 @@ impl Report {
                 starts.filter_map(|start| Some((self.sinks(start)?, start.planned_onset_s))).collect();
             let (most, at_s) = each.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0))?;
             let count = each.iter().filter(|(by, _)| *by > least).count();
-            let (name, kind) = (joint.name.clone(), joint.kind);
-            (count > 0).then_some(Backward { joint: name, kind, count: [count, each.len()], most, at_s })
+            let rest = joint
+                .standstill_error
+                .map(|at_rest| (at_rest.rms.powi(2) - at_rest.bias.powi(2)).max(0.0).sqrt());
+            let swings = rest.filter(|deviation| *deviation > AT_REST * most);
+            let (name, kind, count) = (joint.name.clone(), joint.kind, [count, each.len()]);
+            (count[0] > 0).then_some(Backward { joint: name, kind, count, most, at_s, swings })
         };
         self.replay.joints.iter().filter_map(of).collect()
     }

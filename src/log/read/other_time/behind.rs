@@ -1,6 +1,6 @@
 //! Finds a run that fell behind its plan on the way, and stayed so: an override, or a pause.
 
-use super::both::{Both, FAR, LEFT, LESS_THAN_LAG, Steps, apart, lagged, shift_s};
+use super::both::{BEGUN, Both, FAR, LEFT, LESS_THAN_LAG, Steps, apart, lagged, shift_s};
 use crate::{
     math::{line, range, whole},
     series::{Series, whole_until_s},
@@ -25,6 +25,9 @@ const EXPLAINED: f64 = 0.3;
 /// A run that falls behind evenly is never farther from that than this share of all that it falls behind, in so many parts.
 const EVEN: f64 = 0.15;
 const LEAST_PARTS: usize = 15;
+
+/// A joint that falls behind alone and in this share of the parts goes as fast as it ever does, to within that share, is at a limit of its own.
+const AT_LIMIT: [f64; 2] = [0.5, 0.9];
 
 /// How a run fell behind.
 pub(in crate::log::read) struct Behind {
@@ -78,7 +81,27 @@ impl Behind {
         let stays = joints.iter().any(goes_on);
         // One that stands for good falls behind, too.
         let moves = || joints.iter().any(|joint| found.moved_meanwhile(joint) > AFTER * joint.motion);
+        if found.is_at_limit(&joints) {
+            return None;
+        }
         (stays || count > 1 && count == joints.len() && moves()).then_some(Self { stays, ..found })
+    }
+
+    /// Whether one joint alone moves where the run falls behind, and goes there as fast as it ever does.
+    fn is_at_limit(&self, joints: &[Both]) -> bool {
+        let mut moving = joints.iter().filter(|joint| self.moved_meanwhile(joint) > BEGUN * joint.motion);
+        let Some(joint) = moving.next().filter(|_| moving.next().is_none()) else { return false };
+        let place = |s: f64| joint.came.partition_point(|[t_s, _]| *t_s <= s);
+        let speed = |two: &[[f64; 2]]| {
+            let part = joint.came.get(place(two[0][0])..place(two[1][0]))?;
+            let [from, to] = [part.first()?, part.last()?];
+            Some(((to[1] - from[1]) / (to[0] - from[0])).abs()).filter(|speed| speed.is_finite())
+        };
+        let fastest = self.late_s.windows(2).filter_map(speed).fold(0.0, f64::max);
+        let growing = self.late_s.windows(2).filter(|two| two[1][1] > two[0][1]);
+        let speeds: Vec<f64> = growing.filter_map(speed).collect();
+        let at_limit = speeds.iter().filter(|speed| **speed > AT_LIMIT[1] * fastest).count();
+        at_limit as f64 > AT_LIMIT[0] * speeds.len() as f64
     }
 
     /// How far a joint moves in the parts in which it falls behind.

@@ -1,7 +1,10 @@
 //! Measurements of one plan whose clock, pace and lag are known.
 
 use super::*;
-use crate::{math::smooth_step as step, series::Track};
+use crate::{
+    math::{smooth_step as step, whole},
+    series::Track,
+};
 
 fn series(at_s: impl Fn(f64) -> f64) -> Series {
     let plan = |joint: f64, t: f64| joint * (step((t - 4.0) / 8.0) - 0.6 * step((t - 20.0) / 6.0));
@@ -50,6 +53,20 @@ fn a_run_that_is_slowed_on_the_way_falls_behind() {
     assert!(told.as_ref().is_none_or(|one| !one.contains("fall behind")), "{told:?}");
     assert!(said(|t| t.min(7.0).max(t - 3.0)).is_some_and(|one| one.contains("fall behind")));
     assert_eq!(said(|t| t - 0.6), None);
+}
+
+#[test]
+fn one_joint_that_makes_no_more_than_its_limit_was_not_slowed() {
+    let plan = |t: f64| 0.5 * step((t - 3.0) / 6.0) - 0.9 * step((t - 14.0) / 4.0);
+    let mut came = 0.0_f64;
+    let mut made = vec![];
+    for k in 0..4000 {
+        came += (plan(f64::from(k) / 100.0) - came).clamp(-0.0015, 0.0015);
+        made.push(came);
+    }
+    let at = |t: f64| made[whole(100.0 * t).min(made.len() - 1)];
+    let one = |of: &dyn Fn(f64) -> f64| Series { tracks: vec![Track::sampled("boom", 4000, of)] };
+    assert_eq!(message(&one(&plan), &one(&at), false), None);
 }
 
 #[test]
