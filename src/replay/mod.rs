@@ -25,6 +25,7 @@ mod path;
 mod peak_motion;
 mod place;
 mod profile;
+mod rest_swing;
 mod rules;
 mod signals;
 mod spectrum;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::Rules;
+use super::{Replay, rest_swing::rest_swing};
 use crate::{
     math::{median, whole},
     series::{JointKind, Pair},
@@ -145,17 +145,24 @@ pub struct Swing {
     pub kind: JointKind,
     /// How often, Hz.
     pub frequency_hz: f64,
-    /// Over the run, in the joint's unit.
+    /// Over the run, or over the rests, in the joint's unit.
     pub amplitude: f64,
+    /// Whether it was looked for where the plan rests alone.
+    pub at_rest: bool,
 }
 
 /// Joints that swing by more than half of what counts as a way.
-pub fn swings(pairs: &[Pair], rules: &Rules) -> Vec<Swing> {
-    let of = |pair: &Pair| {
+pub fn swings(pairs: &[Pair], replay: &Replay) -> Vec<Swing> {
+    let over_run = |pair: &Pair| {
         let [frequency_hz, amplitude] = spectrum(pair)?.swing()?;
-        let counts = amplitude > 0.5 * rules.sizes(pair.kind).displacement;
-        counts.then(|| Swing { joint: pair.name.clone(), kind: pair.kind, frequency_hz, amplitude })
+        let counts = amplitude > 0.5 * replay.rules.sizes(pair.kind).displacement;
+        let joint = || pair.name.clone();
+        counts.then(|| Swing { joint: joint(), kind: pair.kind, frequency_hz, amplitude, at_rest: false })
     };
+    let sigma = |pair: &Pair| {
+        replay.joints.iter().find(|joint| joint.name == pair.name).map(|joint| joint.noise.sigma)
+    };
+    let of = |pair: &Pair| over_run(pair).or_else(|| rest_swing(pair, sigma(pair)?, &replay.rules));
     pairs.iter().filter_map(of).collect()
 }
 

@@ -110,5 +110,5 @@ fn slow_way(pair: &Pair, signals: &Signals, range: Range<usize>) -> Option<usize
     let moves = |k: &usize| signals.planned_rad_s[*k].abs() > signals.thresholds.planned_stop;
     let end = first + range.take_while(moves).count();
     let travel = (pair.planned.get(end.checked_sub(1)?)? - pair.planned[first]).abs();
-    (travel >= signals.sizes.min_travel).then_some(end)
+    (end > first && travel >= signals.sizes.min_travel).then_some(end)
 }

@@ -153,14 +153,19 @@ pub(super) fn saturates(
 }
 
 /// Joints that swing though their plans do not.
-fn swings(report: &Report) -> Option<String> {
-    let of = |swing: &Swing| {
+fn swings(report: &Report) -> Vec<String> {
+    let of = |swing: &&Swing| {
         let by = position(swing.kind, swing.amplitude);
         format!("{} at {:.2} Hz by {by}", swing.joint, swing.frequency_hz)
     };
-    let found: Vec<String> = report.swings().iter().map(of).collect();
-    (!found.is_empty())
-        .then(|| format!("Swings that the plan does not ask for, over the run: {}.", found.join(", ")))
+    let all = report.swings();
+    let said = |at_rest: bool, when: &str| {
+        let found: Vec<String> =
+            all.iter().filter(|swing| swing.at_rest == at_rest).map(|swing| of(&swing)).collect();
+        (!found.is_empty())
+            .then(|| format!("Swings that the plan does not ask for, {when}: {}.", found.join(", ")))
+    };
+    [said(false, "over the run"), said(true, "while it rests")].into_iter().flatten().collect()
 }
 
 /// A joint that moves without its plan, or does not move or answer as its plan does; `None` if both move.

@@ -127,7 +127,7 @@ const ALIKE: f64 = 0.2;
 impl Report {
     /// Joints that swing though their plans do not.
     pub fn swings(&self) -> Vec<Swing> {
-        swings(&self.pairs, &self.replay.rules)
+        swings(&self.pairs, &self.replay)
     }
 
     /// How far a joint and its plan move in all, in its unit.

@@ -341,3 +341,36 @@ fn a_header_that_lacks_a_name_is_refused_and_one_that_comes_again_is_not() {
         assert!(code == 3 && out.starts_with("10 rows"), "{head}: {out}{error}");
     }
 }
+
+#[test]
+fn what_a_column_of_quality_of_each_signal_calls_bad_is_left_out_and_is_no_joint() {
+    let bad = |k: u32| k % 50 == 7;
+    let value = |k: u32, came: f64| if bad(k) { 0.0 } else { came };
+    for (word, good, not) in [
+        ("Quality", "192", "0"),
+        ("StatusCode", "0", "2150891520"),
+        ("Quality", "Good", "Bad"),
+        ("Valid", "1", "0"),
+    ] {
+        let head = format!("t_s,boom_set_deg,boom_set_{word},boom_act_deg,boom_act_{word}");
+        let text = table(&head, |k, [plan, came]| {
+            let judged = if bad(k) { not } else { good };
+            format!("{:.2},{plan:.4},{good},{:.4},{judged}", f64::from(k) * 0.02, value(k, came))
+        });
+        assert_peak(&format!("{word}-{good}.csv"), &text, &[]);
+    }
+}
+
+#[test]
+fn times_of_signals_that_are_named_after_them_count_and_not_that_of_the_row() {
+    let day = |ms: u32| format!("2025-06-03 09:{:02}:{:02}.{:03}", ms / 60_000, ms / 1000 % 60, ms % 1000);
+    let head = "Time,boom_set_deg,boom_set_deg_SourceTimestamp,boom_act_deg,boom_act_deg_SourceTimestamp";
+    let text = table(head, |k, [plan, came]| {
+        let ms = 20 * k;
+        format!("{},{plan:.4},{},{came:.4},{}", day(ms + 150), day(ms), day(ms + 5))
+    });
+    let folder = tempfile::tempdir().unwrap();
+    // 5 ms later at up to 0.26 rad/s.
+    let found = peak(folder.path(), "opc.csv", &text, &[]);
+    assert!((found - 0.0273).abs() < 0.0006, "{found}");
+}

@@ -134,3 +134,12 @@ fn a_second_that_lacks_rows_is_left_out_and_moves_no_start() {
     let lag_s = report["joints"][0]["lag_s"].as_f64().unwrap();
     assert!((lag_s - 0.2).abs() < 0.005, "{lag_s}");
 }
+
+#[test]
+fn a_plan_that_is_elsewhere_behind_a_gap_and_rests_there_is_read_to_its_end() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "run.csv", 9, |t| plan(t - 0.1), |t| !(2.5..7.0).contains(&t));
+    let (report, _) = json(folder.path(), "report run.csv");
+    let rest = report["joints"][0]["standstill_error"]["rms"].as_f64().unwrap();
+    assert!(rest < 1e-4, "{rest}");
+}
