@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Rules, Swing, rules::Sizes};
+use super::{Rules, rules::Sizes};
 use crate::{math::median, series::Pair};
 
 /// What comes this long after the plan has come to rest is its motion's, s.
@@ -14,8 +14,8 @@ const FEWEST: usize = 4;
 const REGULAR: f64 = 1.6;
 const MOST_OF_THEM: f64 = 0.9;
 
-/// How a joint swings where its plan rests; `None` if it does not. `sigma`: of its noise.
-pub(super) fn rest_swing(pair: &Pair, sigma: f64, rules: &Rules) -> Option<Swing> {
+/// Frequency, Hz, and amplitude of a joint that swings where its plan rests; `None` of one that does not. `sigma`: of its noise.
+pub(super) fn rest_swing(pair: &Pair, sigma: f64, rules: &Rules) -> Option<[f64; 2]> {
     let sizes = rules.sizes(pair.kind);
     let least = sizes.displacement.max(SIGMAS * sigma);
     let ways = rests(pair, sizes).into_iter().flat_map(|rest| ways(pair, rest, least));
@@ -26,13 +26,8 @@ pub(super) fn rest_swing(pair: &Pair, sigma: f64, rules: &Rules) -> Option<Swing
     let usual_s = median(times_s.clone());
     let regular = |time_s: &&f64| (usual_s / REGULAR..=usual_s * REGULAR).contains(*time_s);
     let count = times_s.iter().filter(regular).count();
-    (count as f64 >= MOST_OF_THEM * times_s.len() as f64).then(|| Swing {
-        joint: pair.name.clone(),
-        kind: pair.kind,
-        frequency_hz: 0.5 / usual_s,
-        amplitude: 0.5 * median(sizes),
-        at_rest: true,
-    })
+    let most = count as f64 >= MOST_OF_THEM * times_s.len() as f64;
+    most.then(|| [0.5 / usual_s, 0.5 * median(sizes)])
 }
 
 /// The rests of the plan in each stretch, without their first second.
@@ -101,7 +96,7 @@ mod tests {
             &Track::sampled("boom", 4000, plan),
             &Track::sampled("boom", 4000, |t| plan(t - 0.2) + course(t) + noise(t)),
         )?;
-        rest_swing(&pair, 1e-4, &Rules::default()).map(|swing| [swing.frequency_hz, swing.amplitude])
+        rest_swing(&pair, 1e-4, &Rules::default())
     }
 
     #[test]

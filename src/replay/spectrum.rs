@@ -154,15 +154,17 @@ pub struct Swing {
 /// Joints that swing by more than half of what counts as a way.
 pub fn swings(pairs: &[Pair], replay: &Replay) -> Vec<Swing> {
     let over_run = |pair: &Pair| {
-        let [frequency_hz, amplitude] = spectrum(pair)?.swing()?;
-        let counts = amplitude > 0.5 * replay.rules.sizes(pair.kind).displacement;
-        let joint = || pair.name.clone();
-        counts.then(|| Swing { joint: joint(), kind: pair.kind, frequency_hz, amplitude, at_rest: false })
+        let found = spectrum(pair)?.swing()?;
+        (found[1] > 0.5 * replay.rules.sizes(pair.kind).displacement).then_some((found, false))
     };
-    let sigma = |pair: &Pair| {
-        replay.joints.iter().find(|joint| joint.name == pair.name).map(|joint| joint.noise.sigma)
+    let at_rest = |pair: &Pair| {
+        let joint = replay.joints.iter().find(|joint| joint.name == pair.name)?;
+        Some((rest_swing(pair, joint.noise.sigma, &replay.rules)?, true))
     };
-    let of = |pair: &Pair| over_run(pair).or_else(|| rest_swing(pair, sigma(pair)?, &replay.rules));
+    let of = |pair: &Pair| {
+        let ([frequency_hz, amplitude], at_rest) = over_run(pair).or_else(|| at_rest(pair))?;
+        Some(Swing { joint: pair.name.clone(), kind: pair.kind, frequency_hz, amplitude, at_rest })
+    };
     pairs.iter().filter_map(of).collect()
 }
 

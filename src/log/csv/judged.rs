@@ -5,6 +5,7 @@ use ::csv::ByteRecord;
 use super::{
     CsvOptions,
     head::{Head, looked_at},
+    label::Label,
     rows::{cell_text, rewritten},
 };
 use crate::remark::{Code, Remarks};
@@ -78,7 +79,8 @@ pub(super) struct Judges {
 impl Judges {
     /// By the first rows of a table; of those that judge all of a row the first counts.
     pub(super) fn of(head: &Head) -> Self {
-        let found = |column| Judge::of_column(head, column);
+        let labels = head.labels();
+        let found = |column| Judge::of_column(head, &labels, column);
         let (of_rows, mut list): (Vec<Judge>, Vec<Judge>) =
             (0..head.names.len()).filter_map(found).partition(|judge| judge.of.is_none());
         list.extend(of_rows.into_iter().next());
@@ -111,7 +113,7 @@ pub(super) fn emptied(row: &ByteRecord, cells: &[usize]) -> ByteRecord {
 }
 
 impl Judge {
-    fn of_column(head: &Head, column: usize) -> Option<Self> {
+    fn of_column(head: &Head, labels: &[Label], column: usize) -> Option<Self> {
         let name = head.names[column].trim_matches(['_', ' ']).to_lowercase();
         let of_kind = |(words, kind): &(&'static str, Kind)| {
             let ends = |word: &&str| {
@@ -126,7 +128,7 @@ impl Judge {
         let (word, kind) = JUDGES.iter().filter_map(of_kind).max_by_key(|(word, _)| word.len())?;
         let of = match name[..name.len() - word.len()].trim_end_matches(|c: char| !c.is_alphanumeric()) {
             "" => None,
-            signal => Some(judged(head, signal)?),
+            signal => Some(judged(head, labels, signal)?),
         };
         let sample = || head.sample.iter().filter_map(|row| row.get(column));
         let numbers = |most: u64| sample().all(|cell| number(cell).is_some_and(|of| of <= most));
@@ -169,8 +171,7 @@ impl Judge {
 }
 
 /// The one signal whose header begins so, in small letters.
-fn judged(head: &Head, begins: &str) -> Option<usize> {
-    let labels = head.labels();
+fn judged(head: &Head, labels: &[Label], begins: &str) -> Option<usize> {
     let is = |column: &usize| {
         let rest = head.names[*column].to_lowercase();
         let rest = rest.trim_start_matches('_').strip_prefix(begins).map(str::to_owned);

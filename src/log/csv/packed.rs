@@ -103,8 +103,8 @@ mod tests {
 
     #[test]
     fn what_counts_seconds_is_left() {
-        let rows: String = (0..50).map(|k| format!("20240312,{}.0,1\n", 142_355 + k)).collect();
-        assert_eq!(of(&format!("Date,Time,q\n{rows}")), None);
+        let rows: Vec<String> = (142_355..142_405).map(|k| format!("20240312,{k}.0,1")).collect();
+        assert_eq!(of(&format!("Date,Time,q\n{}\n", rows.join("\n"))), None);
         assert_eq!(of("Time,q\n142357.0,1\n142358.0,2\n142359.0,3\n"), None);
     }
 }

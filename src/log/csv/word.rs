@@ -36,7 +36,7 @@ const FOREIGN: &str = "qdd ddq ddot acc accel acceleration beschleunigung torque
     voltage spannung power leistung temperature regelabweichung regeldifferenz temp temperatur pressure druck flow valve ventil spool \
     force kraft mode status error err fehler deviation abweichung lag schleppfehler tcp tool pose cart \
     cartesian euler rpy quat quaternion output input digital analog safety runtime counter seq sequence index scaling fraction robot x y z jerk \
-    max min maximum minimum limit limits level gain gains clamp raw temperatures currents torques forces pressures modes voltages quality qualität validity statuscode numericid following schleppabstand erreur écart errore \
+    max min maximum minimum limit limits level gain gains clamp raw temperatures currents torques forces pressures modes voltages quality qualität valid validity statuscode numericid following schleppabstand erreur écart errore \
     pression presión pressione 误差 偏差 压力 电流 电压 温度 力矩 扭矩 流量 加速度 誤差 圧力 電流 電圧 流量 오차 압력 ошибка давление";
 
 fn meaning_of_word(word: &str) -> Meaning {
@@ -111,6 +111,10 @@ pub(super) fn words(header: &str) -> Vec<Word<'_>> {
             words[at - 1].meaning = Meaning::Role(Role::Planned);
         } else if is_position(before) && is(word, "diff") {
             words[at].meaning = Meaning::Foreign;
+        } else if is(before, "value") && is(word, "y") && !word.apart {
+            // What WinCC puts behind a signal.
+            let position = Meaning::Quantity(Quantity::Position);
+            (words[at - 1].meaning, words[at].meaning) = (position, position);
         } else if (is(word, "ramp") || is(word, "rampe")) && (is(before, "after") || is(before, "nach"))
             || is(before, "ramp") && is(word, "out")
         {
