@@ -72,8 +72,8 @@ pub(super) enum Verdict {
 #[derive(Debug, Default)]
 pub(super) struct Judges {
     list: Vec<Judge>,
-    /// The header of the first.
-    header: String,
+    /// The headers of the one of rows, and of the first of values.
+    headers: [String; 2],
 }
 
 impl Judges {
@@ -84,8 +84,11 @@ impl Judges {
         let (of_rows, mut list): (Vec<Judge>, Vec<Judge>) =
             (0..head.names.len()).filter_map(found).partition(|judge| judge.of.is_none());
         list.extend(of_rows.into_iter().next());
-        let header = list.first().map_or_else(String::new, |judge| head.names[judge.column].clone());
-        Self { list, header }
+        let headers = [true, false].map(|of_row| {
+            let first = list.iter().find(|judge| judge.of.is_none() == of_row);
+            first.map_or_else(String::new, |judge| head.names[judge.column].clone())
+        });
+        Self { list, headers }
     }
 
     pub(super) fn says(&self, row: &ByteRecord) -> Verdict {
@@ -99,9 +102,10 @@ impl Judges {
 
     /// Says how many rows or values were bad.
     pub(super) fn remark(&self, [rows, values]: [u64; 2], remarks: &mut Remarks) {
-        let header = &self.header;
-        remarks.add(Code::NotFinite, rows, format!("rows that column {header:?} calls bad; left out"));
-        let message = format!("values that a column of their own, such as {header:?}, calls bad; left out");
+        let [of_rows, of_values] = &self.headers;
+        remarks.add(Code::NotFinite, rows, format!("rows that column {of_rows:?} calls bad; left out"));
+        let message =
+            format!("values that a column of their own, such as {of_values:?}, calls bad; left out");
         remarks.add(Code::NotFinite, values, message);
     }
 }
