@@ -77,7 +77,7 @@ fn day(text: &str) -> Option<String> {
     let digits = text.len() == 8 && text.bytes().all(|byte| byte.is_ascii_digit());
     let [year, month, day] = digits.then(|| [&text[..4], &text[4..6], &text[6..]])?;
     let within =
-        |text: &str, least: u32, most: u32| text.parse().is_ok_and(|of| (least..=most).contains(&of));
+        |text: &str, least: u32, most: u32| text.parse::<u32>().is_ok_and(|of| (least..=most).contains(&of));
     let fits = within(year, 1970, 2099) && within(month, 1, 12) && within(day, 1, 31);
     fits.then(|| format!("{year}-{month}-{day}"))
 }
