@@ -90,16 +90,15 @@ pub(super) fn at_standstill(pair: &Pair, signals: &Signals, rules: &Rules) -> Ve
                     i = motion.samples.end;
                     motions.next();
                 }
-                _ => match slow_way(pair, signals, i..segment.end) {
-                    Some(end) => {
+                _ => {
+                    if let Some(end) = slow_way(pair, signals, i..segment.end) {
                         since_s = t_s[end - 1];
                         i = end;
-                    }
-                    None => {
+                    } else {
                         rest[i] = t_s[i] - since_s > rules.standstill_after_s;
                         i += 1;
                     }
-                },
+                }
             }
         }
     }
