@@ -30,6 +30,7 @@ mod rules;
 mod signals;
 mod spectrum;
 mod stairs;
+mod swing;
 mod told;
 mod tool;
 mod tracking;
@@ -55,7 +56,8 @@ pub use place::{Concentration, ConcentrationTest, Verdict};
 pub use profile::{Profiles, STRETCHES};
 pub use rules::{Rules, Sizes};
 pub use signals::{planned_starts, planned_step, speeds};
-pub use spectrum::{COHERENT, Response, Spectrum, Swing, spectrum, swings};
+pub use spectrum::{COHERENT, Response, Spectrum, spectrum};
+pub use swing::{Swing, swings};
 pub use tool::{
     ToolCause, ToolDeviation, ToolPath, ToolReplay, ToolRest, ToolSplit, ToolWorst, pose_replay, tool_replay,
 };

@@ -13,8 +13,12 @@ use crate::remark::{Code, Remarks};
 /// How a column says whether what it judges is good.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// A word, a quality of OPC, or its status code.
+    /// A word.
     Word,
+    /// A quality of OPC, 0 to 255.
+    Opc,
+    /// A status code of OPC UA.
+    Code,
     /// Yes for good.
     Whether,
     /// Yes for bad.
@@ -53,8 +57,6 @@ struct Judge {
     /// The column of the signal; the whole row without.
     of: Option<usize>,
     kind: Kind,
-    /// Above this number, and below that, all is bad, where numbers say it.
-    bad: [u64; 2],
 }
 
 /// What they say of a row.
@@ -137,40 +139,37 @@ impl Judge {
         let sample = || head.sample.iter().filter_map(|row| row.get(column));
         let numbers = |most: u64| sample().all(|cell| number(cell).is_some_and(|of| of <= most));
         let is_opc = word.contains("qual") || word.contains("integrity");
-        let bad = match kind {
-            Kind::Word if is_opc && numbers(255) && sample().any(|cell| says(cell, &[OPC_GOOD])) => {
-                [u64::MAX, OPC_BELOW_IS_BAD]
-            }
-            Kind::Word
-                if word.contains("code")
-                    && sample().all(|cell| number(cell).is_some_and(|of| of == 0 || of >= UNCERTAIN)) =>
-            {
-                [FROM_IS_BAD, 0]
-            }
-            Kind::Word => {
-                sample().find(|cell| says(cell, &GOOD))?;
-                [u64::MAX, 0]
-            }
-            Kind::Whether | Kind::Doubt => {
-                let [usual, other] = if kind == Kind::Doubt { [NO, YES] } else { [YES, NO] };
-                let all = sample().all(|cell| says(cell, &usual) || says(cell, &other));
-                (all && sample().any(|cell| says(cell, &usual))).then_some([u64::MAX, 0])?
-            }
+        let is_code = |cell: &Vec<u8>| number(cell).is_some_and(|of| of == 0 || of >= UNCERTAIN);
+        let kind = match kind {
+            Kind::Word if is_opc && numbers(255) && sample().any(|cell| says(cell, &[OPC_GOOD])) => Kind::Opc,
+            Kind::Word if word.contains("code") && sample().all(is_code) => Kind::Code,
+            other => other,
         };
-        Some(Self { column, of, kind, bad })
+        let [usual, unusual]: [&[&str]; 2] = match kind {
+            Kind::Opc | Kind::Code => return Some(Self { column, of, kind }),
+            Kind::Word => [&GOOD, &[]],
+            Kind::Whether => [&YES, &NO],
+            Kind::Doubt => [&NO, &YES],
+        };
+        let answers = |cell: &Vec<u8>| kind == Kind::Word || says(cell, usual) || says(cell, unusual);
+        let tells = sample().any(|cell| says(cell, usual)) && sample().all(answers);
+        tells.then_some(Self { column, of, kind })
     }
 
     fn is_bad(&self, row: &ByteRecord) -> bool {
-        let [above, below] = self.bad;
         let cell = row.get(self.column).unwrap_or_default();
         match self.kind {
+            Kind::Word => says(cell, &BAD),
+            Kind::Opc => number(cell).is_some_and(|of| of < OPC_BELOW_IS_BAD),
+            Kind::Code => number(cell).is_some_and(|of| of >= FROM_IS_BAD),
             Kind::Whether => says(cell, &NO),
             Kind::Doubt => says(cell, &YES),
-            Kind::Word if below > 0 || above < u64::MAX => {
-                number(cell).is_some_and(|of| of < below || of >= above)
-            }
-            Kind::Word => says(cell, &BAD),
         }
+    }
+
+    /// Whether it only says yes or no.
+    fn answers(&self) -> bool {
+        matches!(self.kind, Kind::Whether | Kind::Doubt)
     }
 }
 
@@ -231,7 +230,7 @@ pub(super) fn without_bad(
         let before = judges.list.len();
         judges.list.retain(|judge| {
             let bad = counts.next().unwrap_or(0);
-            judge.kind == Kind::Word || MOST * bad <= rows
+            !judge.answers() || MOST * bad <= rows
         });
         if judges.list.len() == before {
             judges.remark(bad, remarks);

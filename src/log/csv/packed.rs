@@ -20,19 +20,17 @@ pub(super) fn unpacked(file: &str, text: &[u8], options: &CsvOptions) -> Option<
     };
     let timely = |column: &usize| label(&head.names[*column], None).is_time;
     let columns = || (0..head.names.len()).filter(timely);
-    let day = columns().find(|column| all(*column, day));
+    let day = columns().find(|column| all(*column, calendar_day));
     let time = columns().find(|column| {
-        Some(*column) != day && (day.is_some() || says(&head, *column)) && all(*column, time)
+        Some(*column) != day && (day.is_some() || says(&head, *column)) && all(*column, time_of_day)
     })?;
     let mut whole = true;
     let table = rewritten(text, dialect.separator, |line, record, out| {
         for (column, cell) in record.iter().enumerate() {
-            let of = match () {
-                () if line < head.first_line || cell.is_empty() => None,
-                () if column == time => Some(self::time as fn(&str) -> Option<String>),
-                () if Some(column) == day => Some(self::day as fn(&str) -> Option<String>),
-                () => None,
-            };
+            let of = [(Some(time), time_of_day as fn(&str) -> Option<String>), (day, calendar_day)]
+                .into_iter()
+                .find(|(own, _)| *own == Some(column) && line >= head.first_line && !cell.is_empty())
+                .map(|(_, of)| of);
             match of.map(|of| unpack(cell, of)) {
                 None => out.write_field(cell)?,
                 Some(plain) => {
@@ -55,7 +53,7 @@ fn unpack(cell: &[u8], of: fn(&str) -> Option<String>) -> Option<String> {
 }
 
 /// Two figures each below 60, and below 24 of the hour, which may lack its first; behind the seconds a fraction, or ms.
-fn time(text: &str) -> Option<String> {
+fn time_of_day(text: &str) -> Option<String> {
     let (whole, fraction) = text.split_at(text.find(['.', ',']).unwrap_or(text.len()));
     if !whole.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
@@ -73,7 +71,7 @@ fn time(text: &str) -> Option<String> {
 }
 
 /// Eight figures of a day of these centuries.
-fn day(text: &str) -> Option<String> {
+fn calendar_day(text: &str) -> Option<String> {
     let digits = text.len() == 8 && text.bytes().all(|byte| byte.is_ascii_digit());
     let [year, month, day] = digits.then(|| [&text[..4], &text[4..6], &text[6..]])?;
     let within =
@@ -98,7 +96,7 @@ mod tests {
         assert_eq!(of(text).as_deref(), Some(expected));
         let text = "UTC time (hhmmss.sss);q\n093005,2;1\n93005,3;2\n93005,4;3\n";
         assert_eq!(of(text).unwrap().lines().nth(2), Some("09:30:05,3;2"));
-        assert_eq!(time("142357300").as_deref(), Some("14:23:57.300"));
+        assert_eq!(time_of_day("142357300").as_deref(), Some("14:23:57.300"));
     }
 
     #[test]
