@@ -9,6 +9,7 @@ use super::{
     number::{Looks, looks},
     rows::{Rows, cell_text, writer},
     scale::unit_named,
+    typed::names_type,
 };
 
 /// Rows that a header may have.
@@ -112,7 +113,9 @@ fn described(levels: &[&[String]], differ: impl Fn(&[String]) -> bool) -> Option
     let is_unit = |cell: &String| unit_named(cell).is_some();
     let is_row = |row: &&&[String]| row.iter().any(is_unit);
     let units = below.iter().find(is_row).copied().unwrap_or_default();
-    let says = |cell: &&String| is_unit(cell) || units[0] != **cell && cell.chars().any(char::is_alphabetic);
+    let says_other =
+        |cell: &String| units[0] != *cell && cell.chars().any(char::is_alphabetic) && !names_type(cell);
+    let says = |cell: &&String| is_unit(cell) || says_other(cell);
     let unit = |column: usize| units.get(column).filter(says);
     let with_unit = |(column, name): (usize, &String)| match unit(column) {
         Some(unit) if label(name, None).stated.is_none() => {
@@ -148,6 +151,8 @@ mod tests {
         assert_eq!(of(&units), Some(format!("\n\nt [s],boom set [deg],boom act [deg],c,d_s\n{ROWS}")));
         let other = format!("t,boom set,boom act,c,d_s\ns,Volt,Volt,-,s\n{ROWS}");
         assert_eq!(of(&other), Some(format!("\nt [s],boom set [Volt],boom act [Volt],c,d_s\n{ROWS}")));
+        let types = other.replace("Volt", "float");
+        assert_eq!(of(&types), Some(format!("\nt [s],boom set,boom act,c,d_s\n{ROWS}")));
         let noted = "descriptor,x,a_set,a_act,b\nunit,s,deg,deg,deg\nstart,0,1,2,3\n,1,1,2,3\n";
         let expected = "\ndescriptor,x [s],a_set [deg],a_act [deg],b [deg]\nstart,0,1,2,3\n,1,1,2,3\n";
         assert_eq!(of(noted).as_deref(), Some(expected));

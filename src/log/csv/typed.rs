@@ -32,6 +32,11 @@ fn is_type(text: &str) -> bool {
     TYPES.iter().any(|one| text.trim().eq_ignore_ascii_case(one))
 }
 
+/// Whether a cell below a name is the type of the numbers, in letters of any case.
+pub(super) fn names_type(cell: &str) -> bool {
+    is_type(cell) || WORDS.iter().chain(&["BOOL"]).any(|one| cell.trim().eq_ignore_ascii_case(one))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
