@@ -49,7 +49,14 @@ pub(super) fn check(task: &Task) -> Result<(), PlanError> {
             torque_n_m,
             rod_speed_m_s,
         } = limits;
-        let most = [velocity_rad_s, acceleration_rad_s2, jerk_rad_s3, torque_n_m, rod_speed_m_s];
+        let [slowest, fastest] = velocity_rad_s;
+        let speeds = *slowest < 0.0 && *fastest > 0.0 && slowest.is_finite() == fastest.is_finite();
+        that(
+            speeds,
+            "speeds of a joint",
+            "the lowest below zero and the highest above it, both finite or neither",
+        )?;
+        let most = [acceleration_rad_s2, jerk_rad_s3, torque_n_m, rod_speed_m_s];
         that(most.iter().all(|limit| **limit > 0.0), "limits of a joint", "numbers above zero, or infinity")?;
         let range = range_rad.is_none_or(|[low, high]| low <= high);
         that(range, "range of a joint", "its lower end first")?;
@@ -79,7 +86,7 @@ mod tests {
             |task| task.points[1].dwell_s = Some(f64::INFINITY),
             |task| task.start.velocity_rad_s = vec![0.1],
             |task| task.interval_s = [2.0, 1.0],
-            |task| task.limits[0].velocity_rad_s = f64::NAN,
+            |task| task.limits[0].velocity_rad_s[1] = f64::NAN,
             |task| task.tool_speed_m_s = 0.0,
         ];
         for (k, change) in wrong.into_iter().enumerate() {

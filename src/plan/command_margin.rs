@@ -155,17 +155,18 @@ impl Setup {
         }
         let derivatives = [
             (Limit::Speed, limits.speed_rad_s),
-            (Limit::Acceleration, limits.acceleration_rad_s2),
-            (Limit::Jerk, limits.jerk_rad_s3),
+            (Limit::Acceleration, limits.acceleration()),
+            (Limit::Jerk, limits.jerk()),
         ];
         for (limit, most) in derivatives.into_iter().take(degree) {
             polynomial = derived(&polynomial, step_s);
             let mut found = bounds(&polynomial);
-            if found.iter().any(|value| value.abs() > NEAR * most) {
+            let of = |value: f64| most[usize::from(value > 0.0)].abs();
+            if found.iter().any(|value| value.abs() > NEAR * of(*value)) {
                 found = near_bounds(&polynomial);
             }
             for value in found {
-                tops.note(limit, Some(j), value, most, value.abs() / most, t_s);
+                tops.note(limit, Some(j), value, of(value), value.abs() / of(value), t_s);
             }
         }
     }
@@ -194,10 +195,10 @@ impl Setup {
         }
     }
 
-    /// Range, rad, and largest speed, rad/s, acceleration, rad/s², and jerk, rad/s³, of a joint; infinite without limits.
-    pub fn joint_limits(&self, joint: usize) -> Option<([f64; 2], [f64; 3])> {
+    /// Lowest and highest angle, rad, speed, rad/s, acceleration, rad/s², and jerk, rad/s³, of a joint; infinite without limits.
+    pub fn joint_limits(&self, joint: usize) -> Option<[[f64; 2]; 4]> {
         let limits = self.limits.get(joint)?;
-        Some((limits.range_rad, [limits.speed_rad_s, limits.acceleration_rad_s2, limits.jerk_rad_s3]))
+        Some([limits.range_rad, limits.speed_rad_s, limits.acceleration(), limits.jerk()])
     }
 }
 

@@ -58,7 +58,7 @@ impl Setup {
         let finite = |of: &dyn Fn(usize) -> f64| (0..self.joint_count()).any(|joint| of(joint).is_finite());
         match limit {
             Limit::Position => self.limits.iter().any(|own| own.range().is_some()),
-            Limit::Speed => finite(&|joint| self.limits[joint].speed_rad_s),
+            Limit::Speed => finite(&|joint| self.limits[joint].speed(1.0)),
             Limit::Acceleration => finite(&|joint| self.limits[joint].acceleration_rad_s2),
             Limit::Jerk => finite(&|joint| self.limits[joint].jerk_rad_s3),
             Limit::Torque => finite(&|joint| self.limits[joint].torque_n_m),
@@ -102,13 +102,15 @@ impl Setup {
         }
         let each = [
             (Limit::Speed, Quantity::Velocity, limits.speed_rad_s),
-            (Limit::Acceleration, Quantity::Acceleration, limits.acceleration_rad_s2),
-            (Limit::Jerk, Quantity::Jerk, limits.jerk_rad_s3),
+            (Limit::Acceleration, Quantity::Acceleration, limits.acceleration()),
+            (Limit::Jerk, Quantity::Jerk, limits.jerk()),
         ];
-        for (limit, quantity, most) in each.into_iter().filter(|(_, _, most)| most.is_finite()) {
-            let at = motion.extrema(joint, quantity).peak();
-            let allowed = most.copysign(at.value);
-            let share = at.value.abs() / most;
+        for (limit, quantity, [low, high]) in each.into_iter().filter(|(_, _, [_, high])| high.is_finite()) {
+            let found = motion.extrema(joint, quantity);
+            let shares = [found.least.value / low, found.greatest.value / high];
+            let (at, allowed) =
+                if shares[1] >= shares[0] { (found.greatest, high) } else { (found.least, low) };
+            let share = shares[0].max(shares[1]);
             let (joint, kind) = (Some(joint), self.kind(Some(joint)));
             margins.push(Margin { limit, joint, kind, value: at.value, allowed, share, t_s: at.t_s });
         }

@@ -27,8 +27,8 @@ pub struct SampledMotion {
     pub key_points_rad: Vec<Vec<f64>>,
     /// Lowest and highest angle of each joint, rad; infinite where there is none.
     pub range_rad: Vec<[f64; 2]>,
-    /// Highest speed of each joint, rad/s; infinite where there is none.
-    pub speed_limit_rad_s: Vec<f64>,
+    /// Lowest and highest speed of each joint, rad/s; infinite where there is none.
+    pub speed_limit_rad_s: Vec<[f64; 2]>,
 }
 
 impl SampledMotion {

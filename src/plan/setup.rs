@@ -177,7 +177,8 @@ impl Setup {
         const LITTLE: f64 = 0.02;
         let share = |joint: &Joint, limits: &JointLimits| {
             let [damping, friction] = joint.resists.map(|by| by.max(0.0));
-            let speed = if limits.speed_rad_s.is_finite() { limits.speed_rad_s } else { 0.0 };
+            let [low, high] = limits.speed_rad_s;
+            let speed = if high.is_finite() { high.max(-low) } else { 0.0 };
             (friction + damping * speed) / limits.torque_n_m
         };
         let joints = self.arm.chain.joints().iter();
@@ -325,18 +326,18 @@ fn ends(task: &Task, order: &[usize]) -> Ends {
 }
 
 fn check_ends(ends: &Ends, limits: &[JointLimits], names: &[&str]) -> Result<(), PlanError> {
-    type Quantity = (&'static str, fn(&JointLimits) -> f64);
+    type Quantity = (&'static str, fn(&JointLimits, f64) -> f64);
     let quantities: [Quantity; 3] = [
-        ("speed", |limit| limit.speed_rad_s),
-        ("acceleration", |limit| limit.acceleration_rad_s2),
-        ("jerk", |limit| limit.jerk_rad_s3),
+        ("speed", |limit, value| limit.speed(value)),
+        ("acceleration", |limit, _| limit.acceleration_rad_s2),
+        ("jerk", |limit, _| limit.jerk_rad_s3),
     ];
     let start = [&ends.start_velocity_rad_s, &ends.start_acceleration_rad_s2, &ends.start_jerk_rad_s3];
     let last = [&ends.end_velocity_rad_s, &ends.end_acceleration_rad_s2, &ends.end_jerk_rad_s3];
     for (end, values) in [("start", start), ("end", last)] {
         for ((quantity, of), values) in quantities.iter().zip(values) {
             for ((value, limit), joint) in values.iter().zip(limits).zip(names) {
-                let share = value.abs() / of(limit);
+                let share = value.abs() / of(limit, *value);
                 if share > 1.0 {
                     return Err(PlanError::EndOutside { end, joint: (*joint).to_owned(), quantity, share });
                 }

@@ -99,7 +99,7 @@ impl Evaluator {
 
     /// The share of a limit at the nodes, between these values, and at the ends of segments.
     fn farthest(&self, setup: &Setup, (joint, quantity): (usize, Quantity), extent: [f64; 2]) -> f64 {
-        let (middle, allowed) = allowance(setup, joint, quantity);
+        let allowed = Allowed::of(setup, joint, quantity);
         let [mut least, mut most] = extent;
         for segment in self.motion.segments() {
             let control = segment.spline.control(joint, quantity);
@@ -107,7 +107,7 @@ impl Evaluator {
                 (least, most) = (smaller(*value, least), larger(*value, most));
             }
         }
-        larger((most - middle) / allowed, (middle - least) / allowed)
+        larger(allowed.share(1.0, most), allowed.share(-1.0, least))
     }
 
     /// Shares of a limit on a spline or its derivative, by piece.
@@ -118,10 +118,11 @@ impl Evaluator {
         peaks: &mut [f64],
         wanted: Wanted,
     ) {
-        let (middle, allowed) = allowance(setup, joint, quantity);
+        let allowed = Allowed::of(setup, joint, quantity);
+        let middle = allowed.middle;
         let values = self.mesh.samples.of(quantity, joint);
         let (nodes, shares) = (values.as_chunks::<LANES>().0, peaks.as_chunks_mut::<2>().0);
-        let mut most = at_nodes(nodes, (middle, allowed), shares);
+        let mut most = at_nodes(nodes, &allowed, shares);
         // Most rows are far from their limit.
         let near = if most > COARSE { nodes.len() } else { 0 };
         // The highest piece comes first: then the others are seen to be lower.
@@ -133,9 +134,9 @@ impl Evaluator {
                 *share = blend(*share, || {
                     let node =
                         piece * LANES + largest_node(nodes[piece].map(|value| sign * (value - middle)));
-                    let floor = sign * middle + floor * allowed;
+                    let floor = sign * middle + floor * allowed.toward(sign);
                     let found = self.near(joint, quantity, node, sign > 0.0, floor);
-                    found.map_or(0.0, |value| (value - sign * middle) / allowed)
+                    found.map_or(0.0, |value| allowed.share(sign, sign * value))
                 });
                 most = larger(*share, most);
             }
@@ -150,15 +151,17 @@ impl Evaluator {
                 let Some(mut value) = at(0) else { continue };
                 // A rest at the end of a range touches it, and what leaves it by a high power of time does so without a slope: the first
                 // control point that is free tells with one.
-                let same = |k: usize| at(k).is_some_and(|other| (other - value).abs() <= TOUCHES * allowed);
-                let touches = (value - middle).abs() >= (1.0 - TOUCHES) * allowed;
+                let toward = allowed.toward(value - middle);
+                let same = |k: usize| at(k).is_some_and(|other| (other - value).abs() <= TOUCHES * toward);
+                let touches = (value - middle).abs() >= (1.0 - TOUCHES) * toward;
                 if wanted == Wanted::Each && quantity == Quantity::Position && touches && (0..fixed).all(same)
                 {
                     value = at(fixed).unwrap_or(value);
                 }
-                let (share, piece) = ((value - middle) / allowed, instant / LANES);
-                peaks[2 * piece] = peaks[2 * piece].max(share);
-                peaks[2 * piece + 1] = peaks[2 * piece + 1].max(-share);
+                let piece = instant / LANES;
+                for (sign, peak) in [1.0, -1.0].into_iter().zip(&mut peaks[2 * piece..2 * piece + 2]) {
+                    *peak = peak.max(allowed.share(sign, *value));
+                }
             }
         }
     }
@@ -179,7 +182,7 @@ impl Evaluator {
     fn sampled(&self, row: usize, slack: f64, peaks: &mut [f64]) {
         let (mesh, values) = (&self.mesh, self.mesh.row(row));
         let (nodes, shares) = (values.as_chunks::<LANES>().0, peaks.as_chunks_mut::<2>().0);
-        let most = at_nodes(nodes, (0.0, 1.0), shares);
+        let most = at_nodes(nodes, &Allowed { middle: 0.0, from_middle: [1.0; 2] }, shares);
         let near = if most > COARSE { nodes.len() } else { 0 };
         for ((piece, nodes), shares) in nodes.iter().enumerate().zip(&mut *shares).take(near) {
             let coarse = shares[0];
@@ -242,14 +245,34 @@ fn largest(values: &[f64]) -> f64 {
     rest.iter().fold(top(&most), |most, value| larger(*value, most))
 }
 
-/// Middle of what a limit allows, and how far from it.
-fn allowance(setup: &Setup, joint: usize, quantity: Quantity) -> (f64, f64) {
-    let limit = &setup.limits[joint];
-    match quantity {
-        Quantity::Position => limit.range().unwrap_or((0.0, f64::INFINITY)),
-        Quantity::Velocity => (0.0, limit.speed_rad_s),
-        Quantity::Acceleration => (0.0, limit.acceleration_rad_s2),
-        Quantity::Jerk => (0.0, limit.jerk_rad_s3),
+/// What a limit allows: so far above and below its middle.
+struct Allowed {
+    middle: f64,
+    from_middle: [f64; 2],
+}
+
+impl Allowed {
+    fn of(setup: &Setup, joint: usize, quantity: Quantity) -> Self {
+        let limit = &setup.limits[joint];
+        let (middle, from_middle) = match quantity {
+            Quantity::Position => {
+                limit.range().map_or((0.0, [f64::INFINITY; 2]), |(middle, half)| (middle, [half; 2]))
+            }
+            Quantity::Velocity => (0.0, [1.0, -1.0].map(|toward| limit.speed(toward))),
+            Quantity::Acceleration => (0.0, [limit.acceleration_rad_s2; 2]),
+            Quantity::Jerk => (0.0, [limit.jerk_rad_s3; 2]),
+        };
+        Self { middle, from_middle }
+    }
+
+    /// How far from the middle the way that a sign says.
+    fn toward(&self, sign: f64) -> f64 {
+        self.from_middle[usize::from(sign < 0.0)]
+    }
+
+    /// Share of it that a value takes that way.
+    fn share(&self, sign: f64, value: f64) -> f64 {
+        sign * (value - self.middle) / self.toward(sign)
     }
 }
 
@@ -277,14 +300,15 @@ fn extents(values: &[f64], count: usize, found: &mut [[f64; 2]]) {
 
 /// Shares of a limit at the nodes of each piece, of each sign; returns the largest.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2", "x86_64+sse4.1"))]
-fn at_nodes(nodes: &[[f64; LANES]], (middle, allowed): (f64, f64), shares: &mut [[f64; 2]]) -> f64 {
+fn at_nodes(nodes: &[[f64; LANES]], allowed: &Allowed, shares: &mut [[f64; 2]]) -> f64 {
+    let Allowed { middle, from_middle: [over, under] } = *allowed;
     let mut most = [0.0; 2];
     for (nodes, shares) in nodes.iter().zip(shares) {
         let (mut above, mut below) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..LANES {
             (above[l], below[l]) = (nodes[l] - middle, -(nodes[l] - middle));
         }
-        *shares = [top(&above) / allowed, top(&below) / allowed];
+        *shares = [top(&above) / over, top(&below) / under];
         most = [larger(shares[0], most[0]), larger(shares[1], most[1])];
     }
     larger(most[0], most[1])

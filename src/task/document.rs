@@ -8,6 +8,15 @@ use toml::Spanned;
 
 pub(super) type ByJoint = BTreeMap<String, f64>;
 
+/// A limit of speed: one for both ways, or the lowest, below zero, and the highest.
+#[derive(Deserialize, Clone, Copy)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(untagged, expecting = "a speed is expected, or the lowest and the highest: [-8.0, 12.0]")]
+pub(super) enum Speed {
+    Either(f64),
+    Ways([f64; 2]),
+}
+
 /// A task: what an arm is to do.
 #[derive(Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -139,12 +148,12 @@ pub(super) struct Limits {
     /// Lowest and highest position by joint that slides.
     #[cfg_attr(test, schemars(with = "Option<BTreeMap<String, [f64; 2]>>"))]
     pub(super) range_mm: Option<Spanned<BTreeMap<String, [f64; 2]>>>,
-    /// Speed by joint.
-    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
-    pub(super) speed_deg_s: Option<Spanned<ByJoint>>,
-    /// Speed by joint that slides.
-    #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
-    pub(super) speed_mm_s: Option<Spanned<ByJoint>>,
+    /// Speed by joint: one for both ways, or the lowest, below zero, and the highest.
+    #[cfg_attr(test, schemars(with = "Option<BTreeMap<String, Speed>>"))]
+    pub(super) speed_deg_s: Option<Spanned<BTreeMap<String, Speed>>>,
+    /// Speed by joint that slides: one for both ways, or the lowest, below zero, and the highest.
+    #[cfg_attr(test, schemars(with = "Option<BTreeMap<String, Speed>>"))]
+    pub(super) speed_mm_s: Option<Spanned<BTreeMap<String, Speed>>>,
     /// Acceleration by joint.
     #[cfg_attr(test, schemars(with = "Option<ByJoint>"))]
     pub(super) acceleration_deg_s2: Option<Spanned<ByJoint>>,

@@ -7,7 +7,7 @@ use toml::Spanned;
 
 use super::{
     Boundary, JointLimits, TaskError,
-    document::{Document, End, Limits, Point},
+    document::{Document, End, Limits, Point, Speed},
 };
 use crate::{series::JointKind, units::radians_from_degrees};
 
@@ -29,6 +29,11 @@ impl<'a, T> Given<'a, T> {
             .zip(kinds)
             .zip(self.tables)
             .filter_map(|((key, kind), table)| Some((&**key, kind, table?)))
+    }
+
+    /// The same, with where they stand and the joints that they name.
+    fn named(&self) -> impl Iterator<Item = (&str, JointKind, Range<usize>, Vec<&'a String>)> {
+        self.tables().map(|(key, kind, table)| (key, kind, table.span(), table.get_ref().keys().collect()))
     }
 
     pub(super) fn is_given(&self) -> bool {
@@ -59,9 +64,12 @@ fn at_end<'a>(end: &str, given: &'a End) -> [Given<'a, f64>; 3] {
     ]
 }
 
-fn of_limits(given: &Limits) -> [Given<'_, f64>; 4] {
+fn speeds(given: &Limits) -> Given<'_, Speed> {
+    given!("limits.", given, speed_deg_s, speed_mm_s)
+}
+
+fn of_limits(given: &Limits) -> [Given<'_, f64>; 3] {
     [
-        given!("limits.", given, speed_deg_s, speed_mm_s),
         given!("limits.", given, acceleration_deg_s2, acceleration_mm_s2),
         given!("limits.", given, jerk_deg_s3, jerk_mm_s3),
         given!("limits.", given, torque_n_m, force_n),
@@ -79,6 +87,8 @@ fn si(kind: JointKind, shown: f64) -> f64 {
         JointKind::Slides => 1e-3 * shown,
     }
 }
+
+const ABOVE_ZERO: &str = "limits above zero are expected";
 
 /// The line, from 1, in which a span starts.
 pub(super) fn line_of(text: &str, span: &Range<usize>) -> usize {
@@ -112,16 +122,9 @@ impl Joints<'_> {
         let numbers = file.points.iter().map(|point| positions(point.get_ref()));
         let numbers: Vec<Given<'_, f64>> =
             numbers.chain(ends.flatten()).chain(of_limits(&file.limits)).collect();
-        let ranges = ranges(&file.limits);
-        let named = numbers.iter().flat_map(|given| {
-            given
-                .tables()
-                .map(|(key, kind, table)| (key, kind, table.span(), table.get_ref().keys().collect()))
-        });
-        let ranged = ranges
-            .tables()
-            .map(|(key, kind, table)| (key, kind, table.span(), table.get_ref().keys().collect::<Vec<_>>()));
-        for (key, kind, span, joints) in named.chain(ranged) {
+        let (ranges, speeds) = (ranges(&file.limits), speeds(&file.limits));
+        let named = numbers.iter().flat_map(Given::named).chain(ranges.named()).chain(speeds.named());
+        for (key, kind, span, joints) in named {
             let line = line_of(self.text, &span);
             for joint in joints {
                 let (first, said, other) = *known.entry(joint).or_insert((kind, line, key));
@@ -219,7 +222,25 @@ impl Joints<'_> {
     }
 
     fn above_zero(&self, given: &Given<'_, f64>) -> Result<Vec<(f64, JointKind)>, TaskError> {
-        self.checked(given, Some(f64::INFINITY), |value| value > 0.0, "limits above zero are expected")
+        self.checked(given, Some(f64::INFINITY), |value| value > 0.0, ABOVE_ZERO)
+    }
+
+    /// Lowest and highest speed, rad/s or m/s.
+    fn speeds(&self, given: &Given<'_, Speed>) -> Result<Vec<[f64; 2]>, TaskError> {
+        let found = self.by_joint(given, Some(Speed::Either(f64::INFINITY)))?;
+        let checked = found.into_iter().map(|(speed, kind)| match speed {
+            Speed::Either(most) if most > 0.0 => Ok([-most, most].map(|end| si(kind, end))),
+            Speed::Either(most) => Err(self.wrong(given, kind, most.to_string(), ABOVE_ZERO)),
+            Speed::Ways([low, high]) if low < 0.0 && high > 0.0 && (high - low).is_finite() => {
+                Ok([low, high].map(|end| si(kind, end)))
+            }
+            Speed::Ways([low, high]) => {
+                let expected =
+                    "a lowest speed below zero is expected first, then a highest above it, both finite";
+                Err(self.wrong(given, kind, format!("[{low}, {high}]"), expected))
+            }
+        });
+        checked.collect()
     }
 
     pub(super) fn limits(&self, limits: &Limits) -> Result<Vec<JointLimits>, TaskError> {
@@ -233,11 +254,12 @@ impl Joints<'_> {
         let range = |(range, kind): ([f64; 2], JointKind)| {
             range[0].max(-range[1]).is_finite().then(|| range.map(|end| si(kind, end)))
         };
-        let [speed, acceleration, jerk, effort] = of_limits(limits);
+        let [acceleration, jerk, effort] = of_limits(limits);
         let rate = |given: &Given<'_, f64>| -> Result<Vec<f64>, TaskError> {
             Ok(self.above_zero(given)?.into_iter().map(|(value, kind)| si(kind, value)).collect())
         };
-        let (speed, acceleration, jerk) = (rate(&speed)?, rate(&acceleration)?, rate(&jerk)?);
+        let speed = self.speeds(&speeds(limits))?;
+        let (acceleration, jerk) = (rate(&acceleration)?, rate(&jerk)?);
         let effort = self.above_zero(&effort)?;
         let keys = ["limits.rod_speed_m_s"; 2].map(str::to_owned);
         let rod = Given { keys, tables: [limits.rod_speed_m_s.as_ref(), None] };

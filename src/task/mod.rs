@@ -80,8 +80,8 @@ pub struct Boundary {
 pub struct JointLimits {
     /// Lowest and highest angle, rad; `None` leaves the arm's own.
     pub range_rad: Option<[f64; 2]>,
-    /// Speed, rad/s.
-    pub velocity_rad_s: f64,
+    /// Lowest speed, below zero, and highest, rad/s: a cylinder goes out slower than it comes in. Both are finite, or neither.
+    pub velocity_rad_s: [f64; 2],
     /// Acceleration, rad/s².
     pub acceleration_rad_s2: f64,
     /// Jerk, rad/s³.

@@ -33,11 +33,29 @@ fn degrees_become_radians_and_joints_take_their_order() {
     assert_eq!((task.points[1].dwell_s, task.points[1].payload_kg), (Some(2.0), Some(10.0)));
     let pitch_rad = -90.0 * DEGREE_RAD;
     assert_eq!(task.points[2].place, Place::Tool { x_m: 1.0, z_m: 2.0, pitch_rad, fixed_angles: false });
-    assert!(task.limits[0].velocity_rad_s.is_infinite());
-    assert!((task.limits[1].velocity_rad_s - 10.0 * DEGREE_RAD).abs() < 1e-15);
+    let speeds = |joint: usize| task.limits[joint].velocity_rad_s.map(|rad_s| rad_s / DEGREE_RAD);
+    assert_eq!(speeds(0).map(f64::is_infinite), [true; 2]);
+    assert!((speeds(1)[0] + 10.0).abs() < 1e-12 && (speeds(1)[1] - 10.0).abs() < 1e-12);
     assert!((task.ceilings[Objective::RmsJerk] - std::f64::consts::PI).abs() < 1e-15);
     assert_eq!((task.degree, task.interval_s), (6, [0.3, 20.0]));
     assert_eq!(task.start.velocity_rad_s, [0.0, 0.0]);
+}
+
+#[test]
+fn a_speed_has_one_limit_for_both_ways_or_the_lowest_and_the_highest() {
+    let two = Task::parse(&TASK.replace("{ b = 10 }", "{ a = [-8, 12.5], b = 10 }")).unwrap();
+    for (limits, said) in two.limits.iter().zip([[-8.0, 12.5], [-10.0, 10.0]]) {
+        let off = limits.velocity_rad_s.iter().zip(said).map(|(rad_s, deg_s)| rad_s - deg_s * DEGREE_RAD);
+        assert!(off.into_iter().all(|off| off.abs() < 1e-15), "{limits:?}");
+    }
+    for (wrong, found) in [("[8, 12]", "[8, 12]"), ("[12, -8]", "[12, -8]"), ("[-8, inf]", "[-8, inf]")] {
+        let said = error(&TASK.replace("b = 10 }", &format!("b = {wrong} }}")));
+        let expected = "a lowest speed below zero is expected first, then a highest above it, both finite";
+        assert_eq!(said, format!("line 13: limits.speed_deg_s is {found}; {expected}"));
+    }
+    assert!(error(&TASK.replace("b = 10 }", "b = -10 }")).contains("is -10; limits above zero are expected"));
+    let said = error(&TASK.replace("b = 10 }", "b = \"fast\" }"));
+    assert!(said.contains("a speed is expected, or the lowest and the highest: [-8.0, 12.0]"), "{said}");
 }
 
 #[test]

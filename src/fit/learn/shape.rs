@@ -25,10 +25,8 @@ pub const SHARE: f64 = 0.95;
 /// What a joint may do beside its plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Room {
-    /// Lowest and highest angle, rad.
-    pub range_rad: [f64; 2],
-    /// Largest speed, rad/s, acceleration, rad/s², and jerk, rad/s³; infinite without a limit.
-    pub most: [f64; 3],
+    /// Lowest and highest angle, rad, speed, rad/s, acceleration, rad/s², and jerk, rad/s³; infinite without a limit.
+    pub limits: [[f64; 2]; 4],
     /// Angle, speed, acceleration and jerk of the plan, every [`STEP_S`].
     pub planned: Vec<[f64; 4]>,
     /// Lowest and highest speed by step, rad/s, as rods, pump and tool have it; empty where they leave any.
@@ -46,10 +44,7 @@ impl Room {
 
     /// Least and largest correction of a derivative over some samples, zero included.
     fn bounds(&self, derivative: usize, samples: Range<usize>) -> [f64; 2] {
-        let [low, high] = match derivative {
-            0 => self.range_rad,
-            k => [-self.most[k - 1], self.most[k - 1]],
-        };
+        let [low, high] = self.limits[derivative];
         let end = samples.end.min(self.planned.len());
         let inside = self.planned.get(samples.start.min(end)..end).unwrap_or_default();
         let (mut least, mut most) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -237,8 +232,7 @@ mod tests {
         let step: Vec<f64> = (0..N).map(|k| if (400..800).contains(&k) { 0.05 } else { 0.0 }).collect();
         let planned = (0..N).map(|k| [0.0, 0.05 * (k as f64 * 0.01).sin(), 0.1, 0.0]).collect();
         let room = Room {
-            range_rad: [-0.02, 0.03],
-            most: [0.1, 0.2, 0.4],
+            limits: [[-0.02, 0.03], [-0.1, 0.1], [-0.2, 0.2], [-0.4, 0.4]],
             planned,
             speed_rad_s: Vec::new(),
             share: 1.0,
@@ -251,7 +245,7 @@ mod tests {
             let all = [state[0], state[1], state[2], jerk];
             assert!(state[0] > -0.02 - 1e-9 && state[0] < 0.03 + 1e-9);
             for k in 1..4 {
-                let share = (planned[k] + all[k]).abs() / room.most[k - 1];
+                let share = (planned[k] + all[k]).abs() / room.limits[k][1];
                 assert!(share < 1.0 + 1e-6, "{k}: {share}");
                 nearest[k] = nearest[k].max(share);
             }
@@ -265,8 +259,7 @@ mod tests {
         let step = vec![0.05; N];
         let planned = vec![[0.0, 0.1, 0.2, 0.4]; N];
         let room = Room {
-            range_rad: [-1.0, 1.0],
-            most: [0.1, 0.1, 0.1],
+            limits: [[-1.0, 1.0], [-0.1, 0.1], [-0.1, 0.1], [-0.1, 0.1]],
             planned,
             speed_rad_s: Vec::new(),
             share: 1.0,

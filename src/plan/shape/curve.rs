@@ -12,20 +12,16 @@ const WITHIN: f64 = 1.0 - 1e-6;
 /// Limits of a joint that a descent keeps; infinite where there are none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bounds {
-    /// Lowest and highest angle, rad.
-    pub(super) range_rad: [f64; 2],
-    /// Largest speed, rad/s, acceleration, rad/s², and jerk, rad/s³.
-    pub(super) most: [f64; 3],
+    /// Lowest and highest angle, rad, speed, rad/s, acceleration, rad/s², and jerk, rad/s³.
+    pub(super) limits: [[f64; 2]; 4],
 }
 
 impl Bounds {
     /// Middle and half the width of what is allowed of the angle's derivative of an order, if it is bounded.
     pub(super) fn of(&self, order: usize) -> Option<(f64, f64)> {
-        let [low, high] = self.range_rad;
-        let (middle, half) = match order.checked_sub(1) {
-            None => (0.5 * (low + high), 0.5 * (high - low) * WITHIN),
-            Some(k) => (0.0, *self.most.get(k)?),
-        };
+        let [low, high] = *self.limits.get(order)?;
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let half = if order == 0 { half * WITHIN } else { half };
         (middle.is_finite() && half.is_finite()).then_some((middle, half))
     }
 }
@@ -119,10 +115,13 @@ impl Frame<'_> {
                 for (order, quantity) in Quantity::ALL.into_iter().enumerate() {
                     let Some((middle, half)) = bounds.of(order) else { continue };
                     let at = segment.spline.extrema(joint, quantity);
-                    let share = (at.greatest.value - middle).max(middle - at.least.value) / half;
-                    match order {
-                        0 => found[0] = found[0].max(share),
-                        _ => found[1] = found[1].max(share.powf(1.0 / order as f64)),
+                    let (least, greatest) = (at.least.value, at.greatest.value);
+                    if order == 0 {
+                        found[0] = found[0].max((greatest - middle).max(middle - least) / half);
+                    } else {
+                        // Time divides a rate itself, and not its distance from the middle.
+                        let share = (greatest / (middle + half)).max(least / (middle - half));
+                        found[1] = found[1].max(share.powf(1.0 / order as f64));
                     }
                 }
             }

@@ -137,7 +137,7 @@ fn stopping_s(setup: &Setup) -> Vec<f64> {
     let one = |interval: usize| {
         let ends = points.of(interval).iter().zip(points.of(interval + 1)).zip(&setup.limits);
         let of = |((from, to), limits): ((&f64, &f64), &JointLimits)| {
-            let most = [limits.speed_rad_s, limits.acceleration_rad_s2, limits.jerk_rad_s3];
+            let most = [limits.speed(to - from), limits.acceleration_rad_s2, limits.jerk_rad_s3];
             let each = PEAKS.into_iter().zip(most).zip([1.0, 0.5, 1.0 / 3.0]);
             each.map(|((peak, most), power)| (peak * (to - from).abs() / most).powf(power))
                 .fold(0.0, f64::max)
@@ -308,8 +308,7 @@ fn start<'a>(setup: &'a Setup, interval_s: &[f64], pieces: usize) -> Option<(Fra
         key: (0..points.len()).collect(),
         bounds: limits
             .map(|limits| Bounds {
-                range_rad: limits.judged_rad,
-                most: [limits.speed_rad_s, limits.acceleration_rad_s2, limits.jerk_rad_s3],
+                limits: [limits.judged_rad, limits.speed_rad_s, limits.acceleration(), limits.jerk()],
             })
             .collect(),
     };
@@ -330,7 +329,7 @@ fn pulled(frame: &Frame<'_>, point_rad: &mut [f64], margin: &Margin) {
     let Some((joint, bounds)) = margin.joint.and_then(|joint| Some((joint, frame.bounds.get(joint)?))) else {
         return;
     };
-    let [low, high] = bounds.range_rad;
+    let [low, high] = bounds.limits[0];
     let (middle, by) = (0.5 * (low + high), 1.0 - 2.0 * (margin.share - 1.0));
     for (point, angles) in point_rad.chunks_exact_mut(frame.joints()).enumerate() {
         if !frame.is_given(point) && frame.pose(point).is_none() {

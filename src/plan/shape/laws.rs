@@ -53,19 +53,20 @@ fn derived(knots: &[f64], control: &[f64], degree: usize) -> (Vec<f64>, Vec<f64>
     (knots[1..knots.len() - 1].to_vec(), derivative.collect())
 }
 
-/// Largest magnitudes of speed, acceleration and jerk of a joint among so many instants.
-fn dense(segment: &Segment, joint: usize, instants: usize) -> [f64; 3] {
+/// Lowest and highest speed, acceleration and jerk of a joint among so many instants.
+fn dense(segment: &Segment, joint: usize, instants: usize) -> [[f64; 2]; 3] {
     let spline = &segment.spline;
     let (mut knots, mut control) =
         (spline.knots_s().to_vec(), spline.control(joint, Quantity::Position).to_vec());
     let mut degree = spline.degree().order();
-    let mut found = [0.0; 3];
-    for found in &mut found {
+    let mut found = [[0.0_f64; 2]; 3];
+    for ends in &mut found {
         (knots, control) = derived(&knots, &control, degree);
         degree -= 1;
         for i in 0..=instants {
             let t_s = spline.duration_s() * i as f64 / instants as f64;
-            *found = f64::max(*found, de_boor(&knots, &control, degree, t_s).abs());
+            let value = de_boor(&knots, &control, degree, t_s);
+            *ends = [ends[0].min(value), ends[1].max(value)];
         }
     }
     found
@@ -75,9 +76,9 @@ fn check(setup: &Setup, found: &Shape, motion: &Motion) {
     let mut highest: f64 = 0.0;
     for segment in motion.segments() {
         for (joint, limits) in setup.limits.iter().enumerate() {
-            let most = [limits.speed_rad_s, limits.acceleration_rad_s2, limits.jerk_rad_s3];
-            for (value, most) in dense(segment, joint, 4000).into_iter().zip(most) {
-                highest = highest.max(value / most);
+            let limits = [limits.speed_rad_s, limits.acceleration(), limits.jerk()];
+            for ([least, most], [low, high]) in dense(segment, joint, 4000).into_iter().zip(limits) {
+                highest = highest.max(least / low).max(most / high);
             }
         }
     }
@@ -130,6 +131,45 @@ fn the_fastest_shape_is_far_faster_than_any_timing_and_keeps_every_limit_between
         println!("{name}: {duration_s:.4} s, {} pieces, {} steps", found.pieces, found.steps);
         assert!(duration_s <= most_s, "{name}: {duration_s}");
         check(&setup, &found, &motion(&setup, &found));
+    }
+}
+
+#[test]
+fn a_joint_that_is_slower_one_way_is_slower_that_way_only() {
+    let (_, text) = TASKS[1];
+    let fastest = |by: [f64; 2]| {
+        let mut task = Task::parse(text).unwrap();
+        for limits in &mut task.limits {
+            let [low, high] = limits.velocity_rad_s;
+            limits.velocity_rad_s = [by[0] * low, by[1] * high];
+        }
+        let setup = Setup::new(&task, Arm::sample().unwrap()).unwrap();
+        let choice = chosen(&setup, Rule::Best(Objective::Duration), &Ceilings::NONE);
+        let timed = setup.motion_through(&setup.times_s(&choice.timing.interval_s), &[]).unwrap();
+        for margin in setup.margins(&timed, &mut Evaluator::new(&setup)) {
+            assert!(!margin.broken(), "{margin:?}");
+        }
+        let found = shape(&setup, &choice, &Ceilings::NONE, None).unwrap();
+        let shaped = motion(&setup, &found);
+        check(&setup, &found, &shaped);
+        [&timed, &shaped].map(|motion| {
+            let beyond = |joint: usize| {
+                let at = motion.extrema(joint, Quantity::Velocity);
+                let [low, high] = setup.limits[joint].speed_rad_s;
+                at.greatest.value.max(-at.least.value) / high.min(-low)
+            };
+            (motion.duration_s(), (0..setup.joint_count()).map(beyond).fold(0.0, f64::max))
+        })
+    };
+    let (weak, one_way, other, strong) =
+        (fastest([0.5, 0.5]), fastest([0.5, 1.0]), fastest([1.0, 0.5]), fastest([1.0, 1.0]));
+    println!("{weak:.3?} {one_way:.3?} {other:.3?} {strong:.3?}");
+    for kind in 0..2 {
+        for uneven in [&one_way, &other] {
+            let [low, here, high] = [&strong, uneven, &weak].map(|plans| plans[kind].0);
+            assert!(low * 0.999 <= here && here < 0.97 * high, "{low} {here} {high}");
+            assert!(uneven[kind].1 > 1.2, "{}", uneven[kind].1);
+        }
     }
 }
 

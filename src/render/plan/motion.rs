@@ -31,7 +31,6 @@ fn joint_chart(joint: &str, k: usize, course: &Course) -> Chart {
     let points: Vec<f64> = motion.key_points_rad[k].iter().map(|q| hundredths(on_paper(kind, *q))).collect();
     let names = (1..=points.len()).map(|point| point.to_string()).collect();
     let key_points = Series::of("key point", Role::Named, 1, points).named(names);
-    let most = motion.speed_limit_rad_s[k];
     let [position, speed, name] = if kind == JointKind::Slides {
         ["Position (mm)", "Speed (mm/s)", "position"]
     } else {
@@ -46,7 +45,8 @@ fn joint_chart(joint: &str, k: usize, course: &Course) -> Chart {
         )
     };
     let angle = panel(position, (name, Role::Measured), &motion.position_rad[k], motion.range_rad[k]);
-    let mut speed = panel(speed, ("speed", Role::Error), &motion.velocity_rad_s[k], [-most, most]);
+    let mut speed =
+        panel(speed, ("speed", Role::Error), &motion.velocity_rad_s[k], motion.speed_limit_rad_s[k]);
     let mut angle = Panel { share: 0.55, ..angle };
     speed.share = 0.45;
     angle.series.push(key_points);

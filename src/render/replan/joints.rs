@@ -50,7 +50,7 @@ pub(super) fn chart(course: &JointCourse) -> Chart {
     let mut speed =
         three(&course.planned.speed_rad_s, &course.sent.speed_rad_s, answered(|drawn| &drawn.speed_rad_s));
     limit(&mut angle, course.kind, &course.range_rad);
-    limit(&mut speed, course.kind, &[-course.speed_limit_rad_s, course.speed_limit_rad_s]);
+    limit(&mut speed, course.kind, &course.speed_limit_rad_s);
     let mut apart = lines.band(missed.as_deref());
     apart.push(lines.line("command", Role::Error, &moved));
     apart.extend(missed.as_deref().map(|missed| lines.line("expected", Role::Measured, missed)));
@@ -91,8 +91,11 @@ fn note(course: &JointCourse, moved_rad: &[f64]) -> String {
     let range = course.range_rad.iter().all(|rad| rad.is_finite());
     let range = range.then(|| format!("{low} to {high} {}", unit(Dimension::Position, kind)));
     let most = course.speed_limit_rad_s;
-    let speed =
-        most.is_finite().then(|| format!("{:.1} {}", on_paper(kind, most), unit(Dimension::Speed, kind)));
+    let speed = most.iter().all(|limit| limit.is_finite()).then(|| {
+        let [down, up] = most.map(|limit| format!("{:.1}", on_paper(kind, limit)));
+        let most = if down.strip_prefix('-') == Some(&*up) { up } else { format!("{down} to {up}") };
+        format!("{most} {}", unit(Dimension::Speed, kind))
+    });
     let limits: Vec<String> = range.into_iter().chain(speed).collect();
     let limits = if limits.is_empty() { String::new() } else { format!("; limits {}", limits.join(", ")) };
     format!("corrected by up to {}{limits}", position(kind, most_rad))

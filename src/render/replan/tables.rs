@@ -186,9 +186,10 @@ fn held_row(held: &HeldTo, units: Units) -> Vec<String> {
     let number = |dimension: Dimension, value: f64| {
         if value.is_finite() { units.cell(dimension, held.kind, value) } else { NONE.into() }
     };
+    let ways = held.speeds_rad_s.map(|ways| ways.map(|speed| number(Dimension::Speed, speed)).join(" to "));
     vec![
         held.joint.clone(),
-        number(Dimension::Speed, held.speed_rad_s),
+        ways.unwrap_or_else(|| number(Dimension::Speed, held.speed_rad_s)),
         by(held.speed_origin).into(),
         number(Dimension::Acceleration, held.acceleration_rad_s2),
         by(held.acceleration_origin).into(),

@@ -112,7 +112,7 @@ pub fn run(inputs: &Inputs) -> Result<Excited, ExciteFailure> {
     let of = |limit: usize, sent: fn(&Track) -> f64| {
         request.as_ref().map_or_else(Vec::new, |request| beyond(&request.setup, &command, limit, sent))
     };
-    let (beyond, sharper) = (of(0, fastest_rad_s), of(1, sharpest_rad_s2));
+    let (beyond, sharper) = (of(1, fastest_rad_s), of(2, sharpest_rad_s2));
     Ok(Excited { joints, excitation, command, task: request.map(|request| request.files), beyond, sharper })
 }
 
@@ -128,7 +128,7 @@ fn sharpest_rad_s2(track: &Track) -> f64 {
 /// What is sent at a limit lies beyond it by less.
 const ROUNDING: f64 = 1e-9;
 
-/// Joints that are sent beyond one of their limits: of speed, acceleration, jerk.
+/// Joints that are sent beyond one of their limits: of the angle's derivative of this order.
 fn beyond(
     setup: &Setup,
     command: &Series,
@@ -136,7 +136,9 @@ fn beyond(
     sent: impl Fn(&Track) -> f64,
 ) -> Vec<(String, JointKind, [f64; 2])> {
     let of_joint = |(j, name): (usize, String)| {
-        let most = *setup.joint_limits(j)?.1.get(limit)?;
+        // Strokes go both ways alike.
+        let [low, high] = *setup.joint_limits(j)?.get(limit)?;
+        let most = high.min(-low);
         let track = command.track(&name)?;
         let sent = sent(track);
         (sent > (1.0 + ROUNDING) * most).then_some((name, track.kind(), [sent, most]))

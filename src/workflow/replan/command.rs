@@ -200,12 +200,13 @@ fn of_step(
                 let speeds_rad_s = range(planned.iter().map(|state| state[1]));
                 let bound = |joint: &&JointFit| !joint.model_holds || joint.reaches_limits(speeds_rad_s);
                 fit.joint(name).filter(bound)?;
-                let (range_rad, most) = (near(&planned, runs, name), [f64::INFINITY; 3]);
-                return Some(Room { range_rad, most, planned, speed_rad_s: Vec::new(), share: 1.0 });
+                let any = [f64::NEG_INFINITY, f64::INFINITY];
+                let limits = [near(&planned, runs, name), any, any, any];
+                return Some(Room { limits, planned, speed_rad_s: Vec::new(), share: 1.0 });
             };
-            let (range_rad, most) = setup.and_then(|s| s.joint_limits(own))?;
+            let limits = setup.and_then(|s| s.joint_limits(own))?;
             let speed_rad_s = narrowed.get(own).cloned().unwrap_or_default();
-            Some(Room { range_rad, most, planned, speed_rad_s, share: SHARE })
+            Some(Room { limits, planned, speed_rad_s, share: SHARE })
         };
         learn(fit, plan, runs, settings, room)
     };

@@ -118,7 +118,7 @@ fn task(rng: &mut ChaCha8Rng) -> Task {
         })
         .collect();
     for limits in &mut task.limits {
-        limits.velocity_rad_s *= uniform(rng, 0.5, 2.0);
+        limits.velocity_rad_s = limits.velocity_rad_s.map(|most| most * uniform(rng, 0.5, 2.0));
         limits.acceleration_rad_s2 *= uniform(rng, 0.5, 2.0);
         limits.jerk_rad_s3 *= uniform(rng, 0.5, 2.0);
         limits.rod_speed_m_s = uniform(rng, 0.05, 0.5);

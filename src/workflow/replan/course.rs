@@ -35,8 +35,8 @@ pub struct JointCourse {
     pub response: Option<(Drawn, f64)>,
     /// Lowest and highest angle, rad; infinite without.
     pub range_rad: [f64; 2],
-    /// Largest speed, rad/s; infinite without.
-    pub speed_limit_rad_s: f64,
+    /// Lowest and highest speed, rad/s; infinite without.
+    pub speed_limit_rad_s: [f64; 2],
 }
 
 /// Of every joint of the plan.
@@ -50,8 +50,7 @@ pub fn courses(replanned: &Replanned) -> Vec<JointCourse> {
         let response = replanned.responses.iter().find(|response| response.angle.name() == name);
         let own = names.iter().position(|own| own == name);
         let limits = own.and_then(|own| setup?.joint_limits(own));
-        let (range_rad, [speed_limit_rad_s, ..]) =
-            limits.unwrap_or(([f64::NEG_INFINITY, f64::INFINITY], [f64::INFINITY; 3]));
+        let [range_rad, speed_limit_rad_s, ..] = limits.unwrap_or([[f64::NEG_INFINITY, f64::INFINITY]; 4]);
         JointCourse {
             name: name.to_owned(),
             kind: track.kind(),

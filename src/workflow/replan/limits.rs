@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use crate::{
     fit::{Estimated, Fit},
     plan::Setup,
-    remark::{Code, Remarks},
     series::{JointKind, Series, Track},
     spline::{Motion, Quantity},
     task::Task,
@@ -35,12 +34,15 @@ pub struct HeldTo {
     /// How it moves: of one that slides read m for rad; left out if it turns.
     #[serde(default, skip_serializing_if = "JointKind::turns")]
     pub kind: JointKind,
-    /// Largest speed, rad/s; null for none.
+    /// Largest speed in the slower direction, rad/s; null for none.
     #[serde(with = "crate::document::unbounded")]
     #[cfg_attr(test, schemars(with = "Option<f64>"))]
     pub speed_rad_s: f64,
     /// Where it comes from.
     pub speed_origin: Origin,
+    /// Lowest and highest speed, rad/s, where the two directions differ.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speeds_rad_s: Option<[f64; 2]>,
     /// Largest acceleration, rad/s²; null for none.
     #[serde(with = "crate::document::unbounded")]
     #[cfg_attr(test, schemars(with = "Option<f64>"))]
@@ -50,8 +52,8 @@ pub struct HeldTo {
 }
 
 /// The task with every joint's speed and acceleration held to what the fit says: of an identified
-/// limit the lower end of its interval in the weaker direction; of one that never showed, what was
-/// reached or what the last plan asked for, whichever is more.
+/// limit the lower end of its interval, of speed in each direction, of acceleration in the weaker one; of one that
+/// never showed, what was reached or what the last plan asked for, whichever is more.
 pub(super) fn held(task: &Task, setup: &Setup, fit: &Fit, last: Option<&Motion>) -> (Task, Vec<HeldTo>) {
     let mut held = task.clone();
     let mut joints = Vec::new();
@@ -63,11 +65,10 @@ pub(super) fn held(task: &Task, setup: &Setup, fit: &Fit, last: Option<&Motion>)
         };
         let known = fit.joint(&name);
         let asked = |quantity| last.map(|motion| motion.extrema(j, quantity).peak().value.abs());
-        let (speed_rad_s, speed_origin) = tightest(
-            limits.velocity_rad_s,
-            known.map(|joint| [joint.speed_limit_growing_rad_s, joint.speed_limit_shrinking_rad_s]),
-            asked(Quantity::Velocity),
-        );
+        let speeds = known.map(|joint| [joint.speed_limit_growing_rad_s, joint.speed_limit_shrinking_rad_s]);
+        let [low, high] = limits.velocity_rad_s;
+        let [up, down] = by_way([high, -low], speeds, asked(Quantity::Velocity));
+        let (speed_rad_s, speed_origin) = if up.0 <= down.0 { up } else { down };
         let (acceleration_rad_s2, acceleration_origin) = tightest(
             limits.acceleration_rad_s2,
             known.map(|joint| {
@@ -75,17 +76,36 @@ pub(super) fn held(task: &Task, setup: &Setup, fit: &Fit, last: Option<&Motion>)
             }),
             asked(Quantity::Acceleration),
         );
-        (limits.velocity_rad_s, limits.acceleration_rad_s2) = (speed_rad_s, acceleration_rad_s2);
+        (limits.velocity_rad_s, limits.acceleration_rad_s2) = ([-down.0, up.0], acceleration_rad_s2);
         joints.push(HeldTo {
             joint: name,
             kind: setup.arm().chain.joints()[j].kind,
             speed_rad_s,
             speed_origin,
+            speeds_rad_s: (up.0.max(down.0) > speed_rad_s).then_some([-down.0, up.0]),
             acceleration_rad_s2,
             acceleration_origin,
         });
     }
     (held, joints)
+}
+
+/// The speeds to hold to, growing and shrinking. In a direction whose limit never showed, a joint may be as fast as in the other
+/// one, or as it was.
+fn by_way(own: [f64; 2], fitted: Option<[Estimated; 2]>, asked: Option<f64>) -> [(f64, Origin); 2] {
+    let identified = |found: &Estimated| found.interval.filter(|_| found.identified).map(|ends| ends[0]);
+    let of = |way: usize| {
+        let fitted = fitted.as_ref()?;
+        let weaker = fitted.iter().filter_map(identified).reduce(f64::min)?;
+        let shown = fitted[way].lower_bound.filter(|shown| *shown > weaker);
+        let found = identified(&fitted[way]).map(|most| (most, Origin::Fitted));
+        Some(found.or(shown.map(|most| (most, Origin::Shown))).unwrap_or((weaker, Origin::Fitted)))
+    };
+    [0, 1].map(|way| match of(way) {
+        Some(found) if found.0 < own[way] => found,
+        Some(_) => (own[way], Origin::Task),
+        None => tightest(own[way], fitted, asked),
+    })
 }
 
 /// The limit to hold to, of both directions.
@@ -104,35 +124,6 @@ fn tightest(own: f64, fitted: Option<[Estimated; 2]>, asked: Option<f64>) -> (f6
         (None, None, _) => return (own, Origin::Task),
     };
     if found < own { (found, origin) } else { (own, Origin::Task) }
-}
-
-/// Joints whose search is held to the fitted speed of the weaker direction though the other makes this many times as much, and more.
-const STRONGER: f64 = 1.25;
-
-/// Says so.
-pub(super) fn remark_weaker_ways<'a>(
-    fit: &Fit,
-    held: impl IntoIterator<Item = &'a HeldTo>,
-    remarks: &mut Remarks,
-) {
-    let of = |held: &HeldTo| {
-        let joint = fit.joint(&held.joint)?;
-        let limits = [joint.speed_limit_growing_rad_s, joint.speed_limit_shrinking_rad_s];
-        let [up, down] = limits.map(|limit| limit.interval.filter(|_| limit.identified).map(|ends| ends[0]));
-        let (most, way) = if up? > down? { (up?, "growing") } else { (down?, "shrinking") };
-        (held.speed_origin == Origin::Fitted && most > STRONGER * held.speed_rad_s).then(|| {
-            format!(
-                "timings hold {name} to {}/s both ways, the fitted speed of its weaker direction; {way} it makes {}/s: a plan whose times are \
-                 given (hydrotrace plan --times) may use that",
-                held.kind.says(held.speed_rad_s),
-                held.kind.says(most),
-                name = held.joint
-            )
-        })
-    };
-    for message in held.into_iter().filter_map(of) {
-        remarks.add(Code::NotSupported, 1, message);
-    }
 }
 
 /// A new plan is beyond what was shown from this share of it on.
@@ -182,8 +173,23 @@ mod tests {
     }
 
     #[test]
-    fn a_fitted_limit_holds_at_its_lower_end_and_in_the_weaker_direction() {
-        assert_eq!(tightest(1.0, Some([found(0.4, 0.6), found(0.3, 0.5)]), Some(0.2)), (0.3, Origin::Fitted));
+    fn a_fitted_limit_holds_at_its_lower_end_in_the_weaker_direction_and_of_speed_in_its_own() {
+        let both = Some([found(0.4, 0.6), found(0.3, 0.5)]);
+        assert_eq!(tightest(1.0, both, Some(0.2)), (0.3, Origin::Fitted));
+        assert_eq!(by_way([1.0; 2], both, Some(0.2)), [(0.4, Origin::Fitted), (0.3, Origin::Fitted)]);
+        assert_eq!(by_way([0.35, 1.0], both, None), [(0.35, Origin::Task), (0.3, Origin::Fitted)]);
+    }
+
+    #[test]
+    fn the_direction_without_a_limit_goes_as_fast_as_the_other_or_as_it_was_seen_to() {
+        let one = |reached| Some([found(0.3, 0.5), bound(reached)]);
+        assert_eq!(by_way([1.0; 2], one(0.2), Some(0.9)), [(0.3, Origin::Fitted); 2]);
+        assert_eq!(by_way([1.0; 2], one(0.6), None), [(0.3, Origin::Fitted), (0.6, Origin::Shown)]);
+        assert_eq!(
+            by_way([f64::INFINITY; 2], Some([bound(0.2), bound(0.3)]), Some(0.35)),
+            [(0.35, Origin::Asked); 2]
+        );
+        assert_eq!(by_way([f64::INFINITY; 2], None, None), [(f64::INFINITY, Origin::Task); 2]);
     }
 
     #[test]

@@ -162,8 +162,6 @@ pub fn run(
         remarks.add(Code::PoorFit, 1, message);
     }
     last.remark_elsewhere(chosen.new.is_some(), &mut remarks);
-    let felt = search.iter().filter(|search| chosen.new.is_some() || search.front.is_empty());
-    limits::remark_weaker_ways(&fit, felt.flat_map(|search| &search.held), &mut remarks);
     if let Some(message) = goes_on.filter(|_| history.follows) {
         remarks.add(Code::MachineChanged, 1, message);
     }

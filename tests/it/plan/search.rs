@@ -198,7 +198,7 @@ fn an_arm_of_any_number_of_joints_without_cylinders_is_planned() {
 #[test]
 fn a_task_that_no_timing_can_keep_names_what_is_nearest() {
     let mut slow = task("simulation.toml");
-    slow.limits[2].velocity_rad_s = 0.01;
+    slow.limits[2].velocity_rad_s = [-0.01, 0.01];
     let setup = Setup::new(&slow, Arm::sample().unwrap()).unwrap();
     let found = front(&setup, &evaluations(1000));
     assert!(found.front.is_empty());

@@ -147,7 +147,7 @@ fn steep(command: &Commanded, setup: &Setup) -> Option<Steep> {
     let own = |(track, sent): (&Track, &Vec<f64>)| {
         let joint = setup.joint_names().iter().position(|name| name == track.name())?;
         let acceleration_rad_s2 = sent.iter().fold(0.0, |most: f64, one| most.max(one.abs()));
-        let limit_rad_s2 = setup.joint_limits(joint)?.1[1];
+        let limit_rad_s2 = setup.joint_limits(joint)?[2][1];
         let (joint, kind) = (track.name().to_owned(), track.kind());
         Some(Steep { joint, kind, acceleration_rad_s2, limit_rad_s2 })
     };
