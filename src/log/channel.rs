@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use super::{
     decode::{Program, Tree},
-    file::{Block, Blocks, ChannelRecord, Layout, Opcode, SchemaRecord, Source, records},
+    file::{Block, Blocks, ChannelRecord, Layout, Loss, Opcode, SchemaRecord, Source, records},
     options::Selector,
     schema::Definition,
     source::{Role, Spec, spec_for},
@@ -67,7 +67,10 @@ impl Definitions {
         }
         let inside =
             mapped(&layout.blocks, Blocks::new, |blocks, block| Self::inside(blocks, *block, source));
-        for one in inside {
+        // A recorder may define a channel in its first chunk alone: what a chunk that is not whole says holds where no
+        // other says it.
+        let (whole, doubtful): (Vec<_>, Vec<_>) = inside.into_iter().partition(|(is_whole, _)| *is_whole);
+        for (_, one) in whole.into_iter().chain(doubtful) {
             one.schemas.into_iter().for_each(|(id, schema)| {
                 all.schemas.entry(id).or_insert(schema);
             });
@@ -76,9 +79,11 @@ impl Definitions {
         all
     }
 
-    fn inside(blocks: &mut Blocks, block: Block, source: &Source) -> Self {
+    /// Whether a block is as it was written, and what it defines.
+    fn inside(blocks: &mut Blocks, block: Block, source: &Source) -> (bool, Self) {
         let mut found = Self { schemas: BTreeMap::new(), channels: BTreeMap::new() };
-        for record in records(blocks.open(block, source).0) {
+        let (bytes, loss) = blocks.open_doubtful(block, source);
+        for record in records(bytes) {
             match record.opcode {
                 Opcode::SCHEMA => {
                     if let Some(schema) = SchemaRecord::parse(record.body) {
@@ -93,7 +98,7 @@ impl Definitions {
                 _ => {}
             }
         }
-        found
+        (matches!(loss, Loss::Nothing | Loss::Cut), found)
     }
 
     fn add_schema(&mut self, schema: &SchemaRecord) {

@@ -88,11 +88,12 @@ pub fn contents(path: &Path) -> std::io::Result<Contents> {
         let own = bytes.windows(OWN_PARQUET.len()).any(|part| part == OWN_PARQUET);
         return Ok(Contents::Parquet(own));
     }
-    if let Some(layout) = scan(&source) {
-        let channels = Definitions::gather(&layout, &source, false).channels;
+    let layouts = scan(&source);
+    if !layouts.is_empty() {
+        let channels = layouts.iter().flat_map(|one| Definitions::gather(one, &source, false).channels);
         return Ok(Contents::Log {
-            topics: channels.into_values().map(|channel| channel.topic).collect(),
-            metadata: layout.metadata.into_iter().map(|one| one.name).collect(),
+            topics: channels.map(|(_, channel)| channel.topic).collect(),
+            metadata: layouts.into_iter().flat_map(|one| one.metadata).map(|one| one.name).collect(),
         });
     }
     let start = String::from_utf8_lossy(&bytes);

@@ -16,7 +16,10 @@ use super::{
     remote,
     unread::unread,
 };
-use crate::remark::{Code, Remarks};
+use crate::{
+    remark::{Code, Remarks},
+    text::shell_argument,
+};
 
 /// The files of one run, open.
 #[derive(Debug)]
@@ -170,8 +173,8 @@ impl LogFiles {
         let mut log = ScannedLog { files: Vec::new(), ordered, described, remarks: self.remarks.clone() };
         let mut others = Vec::new();
         for (path, source) in &self.files {
-            match ScannedFile::of(path, source) {
-                Ok(file) => log.files.push(file),
+            match ScannedFile::all(path, source) {
+                Ok(files) => log.files.extend(one_behind_another(files, &mut log.remarks)),
                 Err(error) => others.push(error),
             }
         }
@@ -180,14 +183,16 @@ impl LogFiles {
 }
 
 impl<'a> ScannedFile<'a> {
-    pub(super) fn of(path: &'a Path, source: &'a Source) -> Result<Self, LogError> {
+    /// The recordings of a file, one behind another; at least one.
+    pub(super) fn all(path: &'a Path, source: &'a Source) -> Result<Vec<Self>, LogError> {
         count(|passes| passes.scanned += 1);
-        let Some(layout) = scan(source) else {
+        let layouts = scan(source);
+        if layouts.is_empty() {
             let mut start = Vec::new();
             source.read(LOOKED_AT, &mut start).map_err(LogError::file("read", path))?;
             return Err(not_mcap(path, &start));
-        };
-        Ok(Self { path, source, layout })
+        }
+        Ok(layouts.into_iter().map(|layout| Self { path, source, layout }).collect())
     }
 
     /// Its name without the path.
@@ -230,6 +235,35 @@ impl<'a> ScannedFile<'a> {
             format!("data of {name} with a wrong checksum and no chunks to tell where; numbers may be wrong"),
         );
     }
+}
+
+/// The recordings of a file that go on where the ones before them ended, as of a recorder that was started again.
+fn one_behind_another<'a>(files: Vec<ScannedFile<'a>>, remarks: &mut Remarks) -> Vec<ScannedFile<'a>> {
+    let mut kept: Vec<ScannedFile<'_>> = Vec::new();
+    for file in files {
+        match kept.last().map(|last| begins_ns(&last.layout)) {
+            Some(before_ns) if begins_ns(&file.layout) <= before_ns => {
+                let (name, at) = (file.name(), file.layout.starts_at);
+                let word = shell_argument(file.path);
+                let message = format!(
+                    "another recording stands at byte {at} of {name} that begins no later than the one before it; it is left out: `tail -c \
+                     +{} {word} > other.mcap` makes it a file of its own",
+                    at + 1
+                );
+                remarks.add(Code::DamagedBytes, 1, message);
+            }
+            Some(_) => {
+                let message = format!(
+                    "recordings stand one behind another in {}; they are read as files of one run",
+                    file.name()
+                );
+                remarks.add(Code::DamagedBytes, 1, message);
+                kept.push(file);
+            }
+            None => kept.push(file),
+        }
+    }
+    kept
 }
 
 /// What a path names: a file, or the bytes of an address.

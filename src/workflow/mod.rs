@@ -21,7 +21,9 @@ pub mod recover;
 pub mod replan;
 pub mod report;
 mod same_plan;
+mod sensed;
 pub mod simulate;
+mod useless;
 #[doc(hidden)]
 pub mod view;
 #[cfg(feature = "parquet")]

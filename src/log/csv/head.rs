@@ -9,6 +9,7 @@ use super::{
     dialect::{Dialect, detect, head},
     label::{Label, label},
     number::{Looks, looks, says_absent},
+    own::agree,
     rows::{Rows, cell_text},
     scale::unit_alone,
 };
@@ -45,7 +46,10 @@ impl Head {
     pub(super) fn labels(&self) -> Vec<Label> {
         let below = |column: usize| self.units.as_ref().and_then(|units| units.get(column));
         let names = self.names.iter().enumerate();
-        names.map(|(column, name)| label(name, below(column).map(String::as_str))).collect()
+        let mut labels: Vec<Label> =
+            names.map(|(column, name)| label(name, below(column).map(String::as_str))).collect();
+        agree(&mut labels);
+        labels
     }
 }
 

@@ -9,6 +9,7 @@ use super::{
     letter::{Lettered, lettered},
     name::{NAMELESS, joint_name},
     object_number::without_object_number,
+    own::own,
     scale::{in_header, is_unclear, unit_alone, unit_named},
     typed::without_type,
     unit::{ANOTHER, METRE, Measure, UNITLESS, Unit, split_suffix},
@@ -32,6 +33,8 @@ pub(super) struct Label {
     pub(super) key: String,
     /// The joint as it is written here.
     pub(super) joint: String,
+    /// The joint by the words of a header in the form of an export, which is taken as it is.
+    pub(super) by_words: Option<String>,
     pub(super) is_time: bool,
     pub(super) is_joint: bool,
     /// Only a role or a length says that this may be a joint: it needs a partner.
@@ -41,10 +44,6 @@ pub(super) struct Label {
     /// What it is if a letter says so.
     pub(super) lettered: Option<Lettered>,
 }
-
-/// Endings that `export` writes; the joint's name before them is taken as it is.
-const OWN: [(&str, Role); 3] =
-    [("_planned", Role::Planned), ("_measured", Role::Measured), ("_command", Role::Command)];
 
 /// Components of the position of a tool.
 pub(super) const PLACE: [&str; 3] = ["x", "y", "z"];
@@ -64,21 +63,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let (name, stated) = parted(header);
     let name = &*name;
     let mut unit = stated.or_else(|| below.and_then(unit_alone));
-    if let Some((joint, role)) = own(name).filter(|_| unit.is_some()) {
-        let speeds = [Measure::AngularSpeed, Measure::LinearSpeed];
-        let speed = unit.is_some_and(|unit| speeds.contains(&unit.measure));
-        let quantity = if speed { Quantity::Velocity } else { Quantity::Position };
-        return Label {
-            role: Some(role),
-            quantity: Some(quantity),
-            unit,
-            stated: unit,
-            words: vec![joint.to_lowercase()],
-            key: joint.to_owned(),
-            joint: joint.to_owned(),
-            is_joint: true,
-            ..Label::default()
-        };
+    if let Some(own) = unit.and_then(|unit| own(name, unit)) {
+        return own;
     }
     let mut words = words(name);
     let bare = name.trim_matches(|c: char| !c.is_alphanumeric());
@@ -161,6 +147,7 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         words,
         key,
         joint,
+        by_words: None,
         is_time,
         is_joint,
         is_weak: !strong || turns,
@@ -231,11 +218,6 @@ fn owner(topic: &[Word<'_>]) -> String {
         known.into_iter().all(|of_all| !word.text.eq_ignore_ascii_case(of_all))
     };
     joint_name(&topic[..topic.iter().rposition(says).map_or(0, |at| at + 1)])
-}
-
-fn own(name: &str) -> Option<(&str, Role)> {
-    let found = OWN.iter().find_map(|(ending, role)| Some((name.strip_suffix(ending)?, *role)));
-    found.filter(|(joint, _)| !joint.is_empty())
 }
 
 /// What stands in square brackets at the end of a header, if it may be a unit.

@@ -54,6 +54,7 @@ mod offered;
 mod only;
 mod options;
 mod order;
+mod own;
 mod packed;
 mod pairing;
 mod printed;

@@ -40,6 +40,8 @@ pub(in crate::log) struct Layout {
     pub(in crate::log) profile: String,
     /// Why the file system did not give all of the file.
     pub(in crate::log) fault: Option<String>,
+    /// Where the recording begins in the file.
+    pub(in crate::log) starts_at: u64,
 }
 
 /// Faults in the outer structure of a file.
@@ -57,28 +59,48 @@ pub(in crate::log) struct Damage {
     pub(in crate::log) broken_data: bool,
 }
 
-/// Walks a file; `None` if nothing in it looks like MCAP.
-pub(in crate::log) fn scan(source: &Source) -> Option<Layout> {
-    let mut scan =
-        Scan { walk: Walk::of(source), layout: Layout::default(), loose: None, held: HeldByBlock::default() };
-    scan.run().then(|| Layout { fault: scan.walk.into_fault().map(|fault| fault.to_string()), ..scan.layout })
+/// Walks a file: the recordings in it, one behind another (one, but for files that were appended to each other or
+/// written into the remains of others); none if nothing in it looks like MCAP.
+pub(in crate::log) fn scan(source: &Source) -> Vec<Layout> {
+    let (mut layouts, mut from) = (Vec::new(), Some(0));
+    while let Some(start) = from {
+        let mut scan = Scan::at(source, start);
+        let is_log = scan.run();
+        from = scan.next;
+        let fault = scan.walk.into_fault().map(|fault| fault.to_string());
+        layouts.extend(is_log.then_some(Layout { fault, starts_at: start, ..scan.layout }));
+    }
+    layouts
 }
 
 struct Scan<'a> {
     walk: Walk<'a>,
+    /// Where the recording begins.
+    start: u64,
+    /// Where another one begins behind it.
+    next: Option<u64>,
+    /// Where the first other one begins, once that was looked for; `u64::MAX` if none does.
+    ahead: Option<u64>,
     layout: Layout,
     /// Where a run of messages outside chunks began, and its first time.
     loose: Option<(u64, u64)>,
     held: HeldByBlock,
 }
 
-impl Scan<'_> {
+impl<'a> Scan<'a> {
+    fn at(source: &'a Source, start: u64) -> Self {
+        let (layout, held) = (Layout::default(), HeldByBlock::default());
+        Self { walk: Walk::of(source), start, next: None, ahead: None, layout, loose: None, held }
+    }
+
     /// Whether anything looks like MCAP.
     fn run(&mut self) -> bool {
-        let has_magic = self.walk.starts_with(0, MAGIC);
+        let has_magic = self.walk.starts_with(self.start, MAGIC);
         let magic = MAGIC.len() as u64;
         let length = self.walk.length();
-        let mut at = if has_magic { magic } else { 0 };
+        let mut at = if has_magic { self.start + magic } else { self.start };
+        // The last record begins here: it may say more bytes than were written of it.
+        let mut last = at;
         let mut statistics: Option<Statistics> = None;
         let mut footer = false;
         let mut before_summary = None;
@@ -86,17 +108,29 @@ impl Scan<'_> {
         while at < length {
             if footer && self.walk.starts_with(at, MAGIC) {
                 self.layout.damage.not_closed = false;
-                self.layout.damage.skipped_bytes += length - at - magic;
+                self.next = self.next_log(at + magic);
+                self.layout.damage.skipped_bytes += self.next.unwrap_or(length) - at - magic;
                 break;
             }
             if let Some(body) = self.cut_chunk(at) {
                 self.close_loose(at);
                 self.chunk(body, true);
+                self.next = self.next_log(body.start);
+                self.cut_at_next();
                 break;
             }
             let Some(record) = self.plausible_at(at).or_else(|| self.chunk_by_inner_length(at)) else {
+                let next = self.next_log(last);
+                let found = self.resync(at + 1, next.unwrap_or(length));
+                if let Some(next) = next.filter(|_| found.is_none()) {
+                    self.next = Some(next);
+                    self.layout.damage.skipped_bytes += next.saturating_sub(at);
+                    self.close_loose(at.min(next));
+                    self.cut_at_next();
+                    break;
+                }
                 self.close_loose(at);
-                if let Some(next) = self.resync(at + 1) {
+                if let Some(next) = found {
                     self.layout.damage.skipped_bytes += next - at;
                     at = next;
                     continue;
@@ -143,6 +177,7 @@ impl Scan<'_> {
                 }
                 _ => self.small(record),
             }
+            last = record.body.start;
             at = record.body.end;
         }
         self.close_loose(at.min(length));
@@ -189,6 +224,39 @@ impl Scan<'_> {
         self.layout.blocks.push(Block { kind: Kind::Chunk { cut }, span: body, begins_ns });
     }
 
+    /// Where another recording begins: its marker, and the header that follows.
+    fn next_log(&mut self, from: u64) -> Option<u64> {
+        const NONE: u64 = u64::MAX;
+        if let Some(known) = self.ahead.filter(|known| *known >= from) {
+            return Some(known).filter(|at| *at < NONE);
+        }
+        let mut from = from.max(self.start + 1);
+        let found = loop {
+            let Some(at) = self.walk.next_byte(from, |byte| byte == MAGIC[0]) else { break NONE };
+            let header = at + MAGIC.len() as u64;
+            if self.walk.starts_with(at, MAGIC)
+                && self.plausible_at(header).is_some_and(|record| record.opcode == Opcode::HEADER)
+            {
+                break at;
+            }
+            from = at + 1;
+        };
+        self.ahead = Some(found);
+        Some(found).filter(|at| *at < NONE)
+    }
+
+    /// The last chunk ends where another recording begins.
+    fn cut_at_next(&mut self) {
+        if let (Some(next), Some(block)) = (self.next, self.layout.blocks.last_mut())
+            && block.span.end > next
+        {
+            block.span.end = next;
+            if block.kind != Kind::Loose {
+                block.kind = Kind::Chunk { cut: true };
+            }
+        }
+    }
+
     fn close_loose(&mut self, end: u64) {
         if let Some((start, begins_ns)) = self.loose.take() {
             self.layout.blocks.push(Block { kind: Kind::Loose, span: Span { start, end }, begins_ns });
@@ -199,7 +267,8 @@ impl Scan<'_> {
     /// writers leave the magic out.
     fn data_holds(&mut self, end: u64, data_end: Span) -> bool {
         let Some(crc) = data_crc(self.walk.look(data_end)).filter(|crc| *crc != 0) else { return true };
-        [0, MAGIC.len() as u64].iter().any(|&start| self.walk.crc(Span { start, end }) == Some(crc))
+        let starts = [self.start, self.start + MAGIC.len() as u64];
+        starts.iter().any(|&start| self.walk.crc(Span { start, end }) == Some(crc))
     }
 
     /// Whether the summary before the footer at `at` is as it was written, or has no checksum.
@@ -207,8 +276,8 @@ impl Scan<'_> {
         // The checksum ends before itself: a record's head and two offsets into the footer.
         const CHECKED: u64 = HEAD + 16;
         let Some((start, crc)) = summary_start_and_crc(self.walk.look(footer)) else { return false };
-        let summary = Span { start, end: at + CHECKED };
-        start == 0 || crc == 0 || (start <= summary.end && self.walk.crc(summary) == Some(crc))
+        let summary = Span { start: self.start.saturating_add(start), end: at + CHECKED };
+        start == 0 || crc == 0 || (summary.start <= summary.end && self.walk.crc(summary) == Some(crc))
     }
 
     /// A chunk that goes on beyond the end of the file, as both its lengths say.
@@ -261,11 +330,11 @@ impl Scan<'_> {
         Some(Found { opcode: Opcode::CHUNK, body })
     }
 
-    /// The next place that is surely a record: a chunk whose lengths agree, or three plausible
+    /// The next place before `to` that is surely a record: a chunk whose lengths agree, or three plausible
     /// records in a row (fewer at the end of the file).
-    fn resync(&mut self, mut from: u64) -> Option<u64> {
+    fn resync(&mut self, mut from: u64, to: u64) -> Option<u64> {
         loop {
-            let at = self.walk.next_candidate(from)?;
+            let at = self.walk.next_candidate(from).filter(|at| *at < to)?;
             if self.is_surely_record(at) {
                 return Some(at);
             }
@@ -310,7 +379,7 @@ mod tests {
     }
 
     fn scanned(bytes: &[u8]) -> Option<Layout> {
-        scan(&bytes.to_vec().into())
+        scan(&bytes.to_vec().into()).into_iter().next()
     }
 
     fn file(parts: &[Vec<u8>]) -> Vec<u8> {

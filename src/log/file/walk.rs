@@ -120,13 +120,18 @@ impl<'a> Walk<'a> {
     }
 
     /// The next place from `at` on that could be the start of a record by its first byte.
-    pub(super) fn next_candidate(&mut self, mut at: u64) -> Option<u64> {
+    pub(super) fn next_candidate(&mut self, at: u64) -> Option<u64> {
+        self.next_byte(at, |byte| (Opcode::FOOTER..=Opcode::DATA_END).contains(&byte))
+    }
+
+    /// The next place from `at` on with such a byte.
+    pub(super) fn next_byte(&mut self, mut at: u64, is_such: impl Fn(u8) -> bool) -> Option<u64> {
         loop {
             let bytes = self.from(at, 1);
             if bytes.is_empty() {
                 return None;
             }
-            match bytes.iter().position(|byte| (Opcode::FOOTER..=Opcode::DATA_END).contains(byte)) {
+            match bytes.iter().position(|byte| is_such(*byte)) {
                 Some(further) => return Some(at + further as u64),
                 None => at += bytes.len() as u64,
             }

@@ -86,9 +86,11 @@ fn recorded(log: &ScannedLog<'_>, run: &CsvRun, beside: bool, options: &ReadOpti
     let source = run.write(Vec::new()).ok()?.into();
     let mut files = Vec::new();
     for one in log.files.iter().filter(|_| beside) {
-        files.push(ScannedFile::of(one.path, one.source).ok()?);
+        if files.last().is_none_or(|last: &ScannedFile<'_>| !std::ptr::eq(last.source, one.source)) {
+            files.extend(ScannedFile::all(one.path, one.source).ok()?);
+        }
     }
-    files.push(ScannedFile::of(log.files.first()?.path, &source).ok()?);
+    files.extend(ScannedFile::all(log.files.first()?.path, &source).ok()?);
     let log = ScannedLog { files, ordered: true, described: log.described, remarks };
     let mut found = super::recording(extract(&log, options), options).ok()?;
     // A row that tells of some joints has no number of the others; those that are none were counted as they were read.

@@ -113,8 +113,8 @@ pub fn survey(paths: &[PathBuf], options: &ReadOptions) -> Result<Survey, LogErr
 #[doc(hidden)]
 pub fn survey_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Survey, LogError> {
     let source = bytes.to_vec().into();
-    let file = ScannedFile::of(Path::new("memory.mcap"), &source)?;
-    let log = ScannedLog { files: vec![file], ordered: true, described: false, remarks: Remarks::default() };
+    let files = ScannedFile::all(Path::new("memory.mcap"), &source)?;
+    let log = ScannedLog { files, ordered: true, described: false, remarks: Remarks::default() };
     Ok(log.survey(options))
 }
 

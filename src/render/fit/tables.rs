@@ -35,6 +35,11 @@ const LIMITS: [Shown; 2] = [
     shown("speed -", "speed limit, shrinking", |j| j.speed_limit_shrinking_rad_s, Dimension::Speed, 1),
 ];
 
+/// A joint whose gain is that of the other way by less than this share is alike both ways.
+const ALIKE: f64 = 0.03;
+
+const RATIO: Shown = shown("ratio", "gain ratio", |j| j.gain_ratio, Dimension::Count, 2);
+
 const LATE: Shown = shown("late", "set values late", |j| j.set_values_late_s, Dimension::Duration, 0);
 
 /// Share of the full signal to each side.
@@ -83,7 +88,7 @@ pub(super) fn machine(fit: &Fit) -> Vec<Section> {
         Section::new(Id::OTHER, "Closed loop", [table(fit, &LOOP, true)]).with(Sentence::note(
             "Held-out R2: share of the tracking error that the model predicts in data it was not fitted to. Unexplained: mean \
              peak of the error that it leaves there after a start. Dead band: speed that must be commanded before the joint \
-             leaves rest; dead-band error: the largest error that stays uncorrected in it. Gain: commanded speed per error; \
+             leaves rest, in the mean of both ways; dead-band error: the largest error that stays uncorrected in it. Gain: commanded speed per error; \
              feed-forward: commanded speed per speed of the plan. <= x: starts are too smooth to show the lag, and it is below. \
              A recorder that stamps the measurement late looks like a lag of that size.",
         )),
@@ -241,6 +246,28 @@ fn named(fit: &Fit, which: &dyn Fn(&JointFit) -> bool) -> Option<String> {
     (!joints.is_empty()).then(|| joints.join(", "))
 }
 
+/// Which joints answer more one way than the other.
+fn one_way_faster(fit: &Fit) -> Option<String> {
+    let one = |joint: &JointFit| {
+        let ([low, high], ratio) = (joint.gain_ratio.interval?, joint.gain_ratio.value?);
+        let known = joint.model_holds && joint.gain_ratio.identified;
+        (known && (low > 1.0 + ALIKE || high < 1.0 - ALIKE)).then(|| {
+            let [growing, shrinking] = [ratio.sqrt(), 1.0 / ratio.sqrt()]
+                .map(|by| by * joint.position_gain_1_s.value.unwrap_or(0.0));
+            let gains = format!("gain {growing:.2} 1/s growing and {shrinking:.2} shrinking");
+            format!("{} {} times ({gains})", joint.name, RATIO.alone(joint))
+        })
+    };
+    let joints: Vec<String> = fit.joints.iter().filter_map(one).collect();
+    (!joints.is_empty()).then(|| {
+        format!(
+            "Asked for the same speed, a joint moves growing by another share of it than shrinking: {}. Gains and feed-forwards of the table are \
+             those between both ways.",
+            joints.join(", ")
+        )
+    })
+}
+
 /// What only some machines have, of joints whose model holds.
 fn structure(fit: &Fit) -> Vec<String> {
     let mut lines = Vec::new();
@@ -256,6 +283,7 @@ fn structure(fit: &Fit) -> Vec<String> {
              limits the speed: a joint at its limit comes back from it late."
         )
     }));
+    lines.extend(one_way_faster(fit));
     let swinging = fit.joints.iter().filter(|joint| joint.model_holds && joint.model.swings());
     let swinging: Vec<String> = swinging
         .map(|joint| {

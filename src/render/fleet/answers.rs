@@ -8,7 +8,8 @@ use crate::{
     },
     replay::Rules,
     workflow::fleet::{
-        Change, Drift, Effect, GateResult, Gated, JointEffect, JointTrend, LevelStep, Worst, WorstJoint,
+        Alike, Change, Drift, Effect, GateResult, Gated, JointEffect, JointTrend, LevelStep, Worst,
+        WorstJoint,
     },
 };
 
@@ -139,6 +140,7 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
     let most = most.max(found.len());
     let mut section = Section::plain(Id::SUMMARY, [Sentence::finding(first)]);
     section = section.with_all(found.iter().map(|trend| Sentence::finding(said(trend))));
+    section = section.with_all(drift.alike.iter().map(|one| Sentence::finding(alike(one))));
     if !drift.trends.is_empty() {
         section = section.with(trends(drift.trends.iter().take(most)));
     }
@@ -158,6 +160,27 @@ pub(crate) fn drift(drift: &Drift, most: usize) -> Document {
     }
     section = section.with_all(not_judged(drift.too_few + drift.trends.len() - judged, drift.fewest_runs));
     Document::default().with(section).remarked(&drift.remarks)
+}
+
+/// So many machines that are alike in not doing what the others did are named.
+const MOST_OTHERS: usize = 5;
+
+/// What most machines did, which no trend of one of them tells.
+fn alike(one: &Alike) -> String {
+    let [after, by] = [&one.after, &one.by].map(|at| at.as_deref().map_or(NONE, day));
+    let others = match one.others.as_slice() {
+        others if (1..=MOST_OTHERS).contains(&others.len()) => format!(" (not {})", others.join(", ")),
+        _ => String::new(),
+    };
+    format!(
+        "{} of {} machines alike{others}: the {} {} by {:.0} % of what is usual from {after} to {by}, with the season, the oil and the work, or by what was \
+         done to all of them. It is taken off the trends.",
+        one.shared_by,
+        one.of,
+        name(one.metric),
+        if one.change > 0.0 { "grows" } else { "falls" },
+        100.0 * one.change.abs(),
+    )
 }
 
 fn not_judged(too_few: usize, fewest: usize) -> Option<Sentence> {

@@ -185,12 +185,22 @@ fn words(level: Level, finding: &Finding, units: Units) -> String {
         ),
         Finding::Whole { overall } => format!(
             "Error with rests and stops, rms over all joints and p95 of the worst joint: {} and {} in the last run; {} and {} with the \
-             plan as it is{}.",
+             plan as it is{}{}.",
             shown(overall.rms_rad),
             shown(overall.p95_rad),
             shown(overall.plain_rms_rad),
             shown(overall.plain_p95_rad),
-            if good { "" } else { ": the correction gains at starts and loses more elsewhere" }
+            overall.before_rad.map_or_else(String::new, |[rms_rad, p95_rad]| format!(
+                ", {} and {} with the best correction before it",
+                shown(rms_rad),
+                shown(p95_rad)
+            )),
+            match (good, overall.is_worse()) {
+                (true, _) => "",
+                (false, true) => ": the correction gains at starts and loses more elsewhere",
+                (false, false) =>
+                    ": the last correction left more than that one, at rests, stops or in between",
+            }
         ),
         Finding::Leave { farthest, also, tool_m } => leaves(level, (farthest, also.as_ref()), *tool_m),
         Finding::Gain { gain, reasons } => {

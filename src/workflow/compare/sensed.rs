@@ -5,32 +5,16 @@ use std::collections::BTreeMap;
 use crate::{
     remark::{Code, Remarks},
     replay::JointReplay,
-    workflow::report::Report,
+    workflow::{report::Report, sensed::Sensed},
 };
 
-/// Noise, or time between samples, that is larger by this on one side changes peaks and delays by itself.
-const APART: f64 = 1.6;
-
-/// Noise that is this share of the peak error of the run at most changes no peak that counts.
-const LITTLE: f64 = 0.005;
-
-/// How a side was measured, in the mean over its runs.
-struct Sensed {
-    noise: f64,
-    interval_s: f64,
-    peak_error: f64,
-}
-
-impl Sensed {
-    fn of(joint: &str, reports: &[Report]) -> Self {
-        let own = || reports.iter().filter_map(|r| r.replay.joints.iter().find(|own| own.name == joint));
-        let mean =
-            |of: &dyn Fn(&JointReplay) -> f64| own().map(of).sum::<f64>() / own().count().max(1) as f64;
-        Self {
-            noise: mean(&|joint| joint.noise.sigma),
-            interval_s: mean(&|joint| joint.sample_interval_s),
-            peak_error: mean(&|joint| joint.tracking_error.peak),
-        }
+fn of(joint: &str, reports: &[Report]) -> Sensed {
+    let own = || reports.iter().filter_map(|r| r.replay.joints.iter().find(|own| own.name == joint));
+    let mean = |of: &dyn Fn(&JointReplay) -> f64| own().map(of).sum::<f64>() / own().count().max(1) as f64;
+    Sensed {
+        noise: mean(&|joint| joint.noise.sigma),
+        interval_s: mean(&|joint| joint.sample_interval_s),
+        peak_error: mean(&|joint| joint.tracking_error.peak),
     }
 }
 
@@ -38,11 +22,8 @@ impl Sensed {
 pub(super) fn sensed_alike(joints: &[String], sides: [&[Report]; 2], remarks: &mut Remarks) {
     let mut found: BTreeMap<String, Vec<&str>> = BTreeMap::new();
     for name in joints {
-        let [before, after] = sides.map(|reports| Sensed::of(name, reports));
-        let apart = |a: f64, b: f64| a.max(b) > APART * a.min(b);
-        let sampled = before.interval_s.min(after.interval_s) > 0.0;
-        let counts = before.noise.max(after.noise) > LITTLE * before.peak_error.min(after.peak_error);
-        let what = if counts && apart(before.noise, after.noise) {
+        let [before, after] = sides.map(|reports| of(name, reports));
+        let what = if before.other_noise(after) {
             let more = before.noise.max(after.noise) / before.noise.min(after.noise);
             let side = if after.noise > before.noise { "after" } else { "before" };
             if more.is_finite() {
@@ -50,7 +31,7 @@ pub(super) fn sensed_alike(joints: &[String], sides: [&[Report]; 2], remarks: &m
             } else {
                 format!("the measurement has noise or a step {side}, and on the other side none at all")
             }
-        } else if sampled && apart(before.interval_s, after.interval_s) {
+        } else if before.other_rate(after) {
             let [before_hz, after_hz] = [before, after].map(|side| 1.0 / side.interval_s);
             format!("sampled at {before_hz:.0} Hz before and at {after_hz:.0} Hz after")
         } else {

@@ -24,6 +24,7 @@ use crate::{
         leads::doubt_leads,
         names::told_apart,
         same_plan::{SAME_RAD, is_again},
+        useless::{LeftOut, dead, stopped, twice},
     },
 };
 pub(in crate::workflow) use observe::observation;
@@ -99,7 +100,35 @@ pub struct Fitted {
 /// ```
 pub fn run(inputs: &Inputs) -> Result<Fitted, FitFailure> {
     let observed = observed(&inputs.logs, &inputs.read)?;
-    Ok(of(&told_apart(&inputs.logs), &observed)?)
+    let names = told_apart(&inputs.logs);
+    let (left, mut doubts) = left_out(&names, &observed);
+    let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
+    let (own, runs): (Vec<String>, Vec<&Recording>) =
+        stay.iter().map(|k| (names[*k].clone(), &observed[*k])).unzip();
+    let mut fitted = of(&own, &runs)?;
+    fitted.again.iter_mut().for_each(|place| *place = stay[*place]);
+    doubts.extend(std::mem::take(&mut fitted.remarks));
+    Ok(Fitted { remarks: doubts, ..fitted })
+}
+
+/// The runs of which nothing is learnt, where there are others, and what is said of them.
+fn left_out(names: &[String], observed: &[Recording]) -> (LeftOut, Remarks) {
+    let (mut left, mut doubts) = (stopped(observed), Remarks::default());
+    if left.len() == observed.len() {
+        for (place, (code, why)) in std::mem::take(&mut left) {
+            let message = format!("{}: {why}; what the stop did is taken for the machine's", names[place]);
+            doubts.add(code, 1, message);
+        }
+    }
+    twice(observed, names, &mut left);
+    let stay: Vec<usize> = (0..observed.len()).filter(|k| !left.contains_key(k)).collect();
+    let sides: Vec<[&Series; 2]> =
+        stay.iter().map(|k| [&observed[*k].planned, &observed[*k].measured]).collect();
+    left.extend(dead(&sides).into_iter().map(|(place, why)| (stay[place], why)));
+    for (place, (code, why)) in &left {
+        doubts.add(*code, 1, format!("{}: {why}; nothing is learnt from this run", names[*place]));
+    }
+    (left, doubts)
 }
 
 /// Reads runs.

@@ -36,7 +36,7 @@ fn shared(metric: By, level: f64, usual: f64) -> f64 {
 
 impl Common {
     /// Of what these joints did: nothing where they agree no more than by chance. `None` where too few machines tell.
-    fn of(metric: By, joints: &[&Leveled]) -> Option<Self> {
+    pub(super) fn of(metric: By, joints: &[&Leveled]) -> Option<Self> {
         let joints: Vec<&&Leveled> = joints.iter().filter(|joint| joint.usual > 0.0).collect();
         let days = || joints.iter().flat_map(|joint| &joint.levels).map(|level| level.0);
         let (from_days, to_days) = (days().reduce(f64::min)?, days().reduce(f64::max)?);
@@ -61,6 +61,13 @@ impl Common {
             }
         }
         levels.iter().any(|level| level.is_finite()).then_some(Self { from_days, step_days, levels })
+    }
+
+    /// Where it is known, days since 1970 and level.
+    pub(super) fn points(&self) -> Vec<(f64, f64)> {
+        let at = |bin: usize| self.from_days + (bin as f64 + 0.5) * self.step_days;
+        let all = self.levels.iter().enumerate().map(|(bin, level)| (at(bin), *level));
+        all.filter(|(_, level)| level.is_finite()).collect()
     }
 
     /// At the instants of a joint, in its unit; the nearest that is known where it is not. `None` where that is so too often.

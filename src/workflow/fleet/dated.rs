@@ -30,17 +30,19 @@ const DOUBTED_DAYS: f64 = 31.0;
 const OTHER_DATE_DAYS: f64 = 180.0;
 
 /// When a run began by the name of its log, or of its folder, where that says a date far from that of its stamps, microseconds
-/// since 1970; and whether it is so far that the stamps cannot be right. Folders farther up may be of a delivery, or a number. The
-/// time of day is that of the stamps where the name says none.
+/// since 1970; and whether it is so far that the stamps cannot be right. Folders farther up may be of a delivery, or a number; digits
+/// that follow a letter, as of `EX20240501`, may be a serial number, too. The time of day is that of the stamps where the name says none.
 pub(super) fn named_otherwise(uri: &str, started_us: i64) -> Option<(i64, bool)> {
     const DAY_US: i64 = 86_400_000_000;
     let mut names = uri.trim_end_matches('/').rsplit('/').take(2);
-    let named_us = names.find_map(date_in)?.and_utc().timestamp_micros();
+    let (name, named) = names.find_map(|name| Some((name, date_in(name)?)))?;
+    let apart = date_apart_in(name) == Some(named);
+    let named_us = named.and_utc().timestamp_micros();
     let apart_s = named_us.abs_diff(started_us) as f64 / 1e6;
     let of_day = named_us.rem_euclid(DAY_US) == 0;
     let us = if of_day { named_us + started_us.rem_euclid(DAY_US) } else { named_us };
     let beyond = |days: f64| apart_s > days * SECONDS_PER_DAY;
-    beyond(DOUBTED_DAYS).then(|| (us, beyond(OTHER_DATE_DAYS)))
+    beyond(DOUBTED_DAYS).then(|| (us, apart && beyond(OTHER_DATE_DAYS)))
 }
 
 /// The doubt about a run without one.
@@ -50,9 +52,18 @@ pub(super) fn undated() -> Remark {
 }
 
 fn date_in(name: &str) -> Option<NaiveDateTime> {
+    date_behind(name, |before| !before.is_ascii_digit())
+}
+
+/// The same that follows no letter.
+fn date_apart_in(name: &str) -> Option<NaiveDateTime> {
+    date_behind(name, |before| !before.is_ascii_alphanumeric())
+}
+
+/// A run is later than the plan or the revision that its name says too.
+fn date_behind(name: &str, may_stand: impl Fn(u8) -> bool) -> Option<NaiveDateTime> {
     let bytes = name.as_bytes();
-    let begins = |at: &usize| *at == 0 || !bytes[*at - 1].is_ascii_digit();
-    // A run is later than the plan or the revision that its name says too.
+    let begins = |at: &usize| *at == 0 || may_stand(bytes[*at - 1]);
     (0..bytes.len()).filter(begins).filter_map(|at| date_at(&bytes[at..])).max()
 }
 
@@ -133,6 +144,8 @@ mod tests {
             assert_eq!(found.map(|(us, _)| us), named_us, "{uri}");
             assert!(found.is_none_or(|(_, surely)| surely == uri.contains("2025")), "{uri}");
         }
+        let serial = named_otherwise("/logs/EX20240501/run.csv", day_us);
+        assert!(matches!(serial, Some((_, false))), "a serial number may look like a date: {serial:?}");
     }
 
     #[test]

@@ -8,24 +8,19 @@
 //! A new plan has other starts, so the levels before it and from it on are told apart by what four other machines or more did that ran
 //! both plans. Where fewer did, only what lies before or after it is judged, and a remark says so.
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    path::Path,
-};
+use std::{collections::BTreeSet, path::Path};
 
 use serde::{Deserialize, Serialize};
 
 use super::{
-    common::Commons,
+    alike::Alike,
     doubts,
     failure::FleetFailure,
-    found::judge,
-    history::{Axis, By, Filter, History, Scatters, Values},
+    history::{By, Filter, History},
     joint_trend::{FEWEST_RUNS, JointTrend, MOST_FALSE},
-    leveled::Leveled,
-    link::links,
+    judged::{Judged, judged},
     map::{Map, maps},
-    one_way::{by_direction, clearest},
+    one_way::clearest,
     run::date,
 };
 use crate::{
@@ -55,6 +50,9 @@ pub struct Drift {
     pub trends: Vec<JointTrend>,
     /// How the machines did over the days, by metric.
     pub maps: Vec<Map>,
+    /// What most machines did alike, which is taken off the trends.
+    #[serde(default)]
+    pub alike: Vec<Alike>,
     /// Machines, joints and metrics with too few runs of one plan to tell a trend.
     pub too_few: usize,
     /// Runs that a trend takes at least to be found among so many, if all of them are in order.
@@ -83,7 +81,7 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
     let wanted = |machine: &str| filter.machine.as_ref().is_none_or(|own| own == machine);
     let shown = |joint: &str| filter.joint.as_ref().is_none_or(|own| own == joint);
     let (daily, mut of_few_days) = history.by_day(&[], |days| days.len() >= FEWEST_RUNS);
-    let (trends, few) = judged(&daily, by);
+    let Judged { trends, few, alike } = judged(&daily, by);
     of_few_days.retain(|machine| trends.iter().any(|trend| trend.found && trend.machine == *machine));
     doubts::few_days(&of_few_days, &mut history.remarks);
     let too_few = few.iter().filter(|axis| wanted(&axis.machine) && shown(&axis.joint)).count();
@@ -108,57 +106,11 @@ pub fn drift(root: &Path, filter: &Filter, by: &[By]) -> Result<Drift, FleetFail
         false_discovery_rate: MOST_FALSE,
         trends,
         maps: maps(&history, by, wanted),
+        alike,
         too_few,
         fewest_runs,
         remarks: history.remarks,
     })
-}
-
-/// The trends of all joints by these metrics, those of each direction of starts, too, judged; and the joints with too few runs, by metric.
-fn judged<'a>(history: &'a History, by: &[By]) -> (Vec<JointTrend>, Vec<&'a Axis>) {
-    let scatters: BTreeMap<By, Scatters> = by.iter().map(|by| (*by, history.scatters(*by))).collect();
-    let none = Scatters::new();
-    let mut joints = Vec::new();
-    let mut too_few = Vec::new();
-    for ((axis, metric), values) in &history.values {
-        if !by.contains(metric) {
-            continue;
-        }
-        let scatters = (axis.joint.as_str(), scatters.get(metric).unwrap_or(&none));
-        let leveled = |values: &Values, direction| {
-            let found = Leveled::of(*metric, &history.runs, values, scatters)?;
-            let unit = if *metric == By::Peak { axis.unit.clone() } else { "s".to_owned() };
-            Some(Leveled {
-                machine: axis.machine.clone(),
-                joint: axis.joint.clone(),
-                direction,
-                unit,
-                ..found
-            })
-        };
-        let Some(found) = leveled(values, None) else {
-            too_few.push(axis);
-            continue;
-        };
-        joints.push(found);
-        for (direction, own) in by_direction(history, axis, values) {
-            joints.extend(leveled(&own, Some(direction)));
-        }
-    }
-    let links = links(&joints);
-    let joints: Vec<Leveled> =
-        joints.into_iter().zip(links).map(|(joint, link)| joint.linked(link)).collect();
-    let commons = Commons::of(&joints);
-    let mut trends: Vec<JointTrend> = joints
-        .into_iter()
-        .filter_map(|joint| {
-            let common = commons.at(&joint);
-            let shared_per_day = common.as_ref().and_then(|common| joint.shared_per_day(common));
-            Some(JointTrend { shared_per_day, ..joint.less(common).trend()? })
-        })
-        .collect();
-    judge(&mut trends);
-    (trends, too_few)
 }
 
 /// Says which joints have another plan from a day on, so that nothing tells what they did on that very day.
@@ -186,14 +138,19 @@ fn fewest_runs(trends: usize) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::collections::BTreeMap;
 
     use rand_chacha::rand_core::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
 
     use super::{
-        super::{history::Event, run::Run},
+        super::{
+            found::judge,
+            history::{Axis, Event, Scatters, Values},
+            leveled::Leveled,
+            run::Run,
+        },
         *,
     };
 
@@ -289,7 +246,11 @@ mod tests {
 
     /// Machines with two joints that run once a day, each start with its own level; `of`: the dead time beside that by machine, day and joint
     /// and the plan of the day, s.
-    fn fleet(seed: u64, machines: u32, of: impl Fn(u32, u32, usize) -> (f64, &'static str)) -> History {
+    pub(in super::super) fn fleet(
+        seed: u64,
+        machines: u32,
+        of: impl Fn(u32, u32, usize) -> (f64, &'static str),
+    ) -> History {
         let mut history = History::default();
         let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
         let mut noise = |sd: f64| -> f64 { sd * Distribution::<f64>::sample(&StandardNormal, &mut rng) };
@@ -314,8 +275,12 @@ mod tests {
         history
     }
 
-    fn found(history: &History) -> Vec<JointTrend> {
-        clearest(judged(history, &[By::Delay]).0).into_iter().filter(|trend| trend.found).collect()
+    pub(in super::super) fn found(history: &History) -> Vec<JointTrend> {
+        clearest(judged(history, &[By::Delay]).trends).into_iter().filter(|trend| trend.found).collect()
+    }
+
+    pub(in super::super) fn judged_alike(history: &History) -> Vec<Alike> {
+        judged(history, &[By::Delay]).alike
     }
 
     fn plan(is_new: bool) -> &'static str {
@@ -351,7 +316,7 @@ mod tests {
             );
             assert!(step.step.as_ref().is_some_and(|step| (step.change - 0.15).abs() < 0.04), "{step:?}");
             assert!(step.untold.is_empty());
-            let trends = clearest(judged(&fleet(seed, 5, of(false)), &[By::Delay]).0);
+            let trends = clearest(judged(&fleet(seed, 5, of(false)), &[By::Delay]).trends);
             let mut remarks = Remarks::default();
             untold(&trends, &mut remarks);
             assert_eq!(remarks.as_slice()[0].count, 2, "both joints of one machine: {remarks:?}");

@@ -59,11 +59,16 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
         let surely = q_least[k] < MOST_FALSE;
         let one_way = trend.interval_95[0] * trend.interval_95[1] >= 0.0;
         let by = (trend.slope_per_day * trend.changing_days).abs();
-        let drifts = surely && one_way && !usual && by >= least;
+        let span = span_days(trend);
+        let is_own = trend.own.slope(trend.slope_per_day, [span[1] - trend.changing_days, span[1]]);
+        let drifts = surely && one_way && !usual && by >= least && is_own;
         if let Some(step) = &mut trend.step {
             step.q_value = q_step[k];
             let beyond = beyond(step.change, step.interval_95, least, elsewhere[k]);
-            let steps = surely && step.change.abs() >= least && beyond;
+            let at = |run: usize| trend.levels.get(run).map_or(0.0, |level| level.at_days);
+            let is_own =
+                trend.own.step(step.change, [at(step.runs_before.saturating_sub(1)), at(step.runs_before)]);
+            let steps = surely && step.change.abs() >= least && beyond && is_own;
             // What a drift explains nearly as well is one: its growth a day is the smaller claim.
             trend.is_step = steps && (!drifts || step.is_sure());
             if trend.is_step {
@@ -131,9 +136,25 @@ fn changes(trends: &[JointTrend], own: &JointTrend) -> Vec<Change> {
             None => elsewhere(trends, own, change.at_days[1]),
             Some(_) => elsewhere_between(trends, own, change.at_days),
         };
-        change.change.abs() >= least && beyond(change.change, change.interval_95, least, others)
+        is_own(own, change)
+            && change.change.abs() >= least
+            && beyond(change.change, change.interval_95, least, others)
     };
-    own.course.iter().flat_map(|course| &course.changes).filter(own_change).cloned().collect()
+    let all = || own.course.iter().flat_map(|course| &course.changes);
+    // A course is as sure as its largest change: where that is of the others, the rest is not known.
+    let largest = all().max_by(|a, b| a.change.abs().total_cmp(&b.change.abs()));
+    if largest.is_some_and(|change| !is_own(own, change)) {
+        return Vec::new();
+    }
+    all().filter(own_change).cloned().collect()
+}
+
+/// Whether a change is in the joint's own levels, too.
+fn is_own(own: &JointTrend, change: &Change) -> bool {
+    match change.per_day {
+        None => own.own.step(change.change, change.at_days),
+        Some((per_day, _)) => own.own.slope(per_day, change.at_days),
+    }
 }
 
 /// What trends are compared with one another.

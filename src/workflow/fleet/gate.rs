@@ -158,6 +158,7 @@ mod tests {
             machines: 1,
             false_discovery_rate: 0.05,
             trends: slopes.iter().map(trend).collect(),
+            alike: Vec::new(),
             maps: Vec::new(),
             too_few: 0,
             fewest_runs: 5,

@@ -14,6 +14,7 @@ use super::{
     other_joints,
     renamed::as_one,
     run::Run,
+    sensed::{Measured, measured_otherwise},
     sources::changed_ns,
     store::{is_unfinished, parts},
     tables::{self, Name},
@@ -27,6 +28,7 @@ use crate::{
     remark::{Code, Remarks},
     replay::{Answer, Rules},
     suggest::nearest,
+    workflow::sensed::Sensed,
 };
 
 /// A metric that machines are judged by.
@@ -126,7 +128,7 @@ impl History {
             for (name, columns, rows) in [
                 (Name::Runs, &RUN[..], &mut runs),
                 (Name::Transitions, &START[..], &mut starts),
-                (Name::Joints, &LAG[..], &mut lags),
+                (Name::Joints, &JOINT[..], &mut lags),
             ] {
                 let path = part.path(name);
                 if name == Name::Runs || root.join(&path).exists() {
@@ -181,7 +183,7 @@ impl History {
         starts.retain(joint);
         lags.retain(joint);
         history.take_starts(&starts, &index);
-        history.take_lags(&lags, &index);
+        history.take_joints(&lags, &index);
         Ok(history)
     }
 
@@ -305,19 +307,24 @@ impl History {
         self.values.retain(|_, values| !values.is_empty());
     }
 
-    fn take_lags(&mut self, rows: &[Vec<Cell>], index: &BTreeMap<String, usize>) {
+    /// Lags, and how the joints were measured.
+    fn take_joints(&mut self, rows: &[Vec<Cell>], index: &BTreeMap<String, usize>) {
+        let mut measured = Measured::new();
         for row in rows {
             let text = |k: usize| row[k].as_text();
             let run = text(0).and_then(|run_id| index.get(run_id)).copied();
-            let (Some(run), Some(plan), Some(joint), Some(lag_s)) = (run, text(1), text(2), row[4].as_real())
-            else {
-                continue;
-            };
+            let (Some(run), Some(plan), Some(joint)) = (run, text(1), text(2)) else { continue };
+            if let [Some(noise), Some(interval_s), Some(peak_error)] = [5, 6, 7].map(|k| row[k].as_real()) {
+                let own = measured.entry((self.runs[run].machine.clone(), joint.to_owned())).or_default();
+                own.insert(run, Sensed { noise, interval_s, peak_error });
+            }
+            let Some(lag_s) = row[4].as_real() else { continue };
             let unit = text(3).unwrap_or("rad").to_owned();
             let axis = Axis { machine: self.runs[run].machine.clone(), joint: joint.to_owned(), unit };
             let event = Event { plan_id: plan.to_owned(), index: 0 };
             self.values.entry((axis, By::Lag)).or_default().entry(event).or_default().insert(run, lag_s);
         }
+        measured_otherwise(&self.runs, &measured, &mut self.remarks);
     }
 
     /// The median of all machines at each start of each joint.
@@ -383,7 +390,8 @@ const START: [&str; 10] = [
     "answer", "direction",
 ];
 const REMARK: [&str; 2] = ["run_id", "code"];
-const LAG: [&str; 5] = ["run_id", "plan_id", "joint", "unit", "lag_s"];
+const JOINT: [&str; 8] =
+    ["run_id", "plan_id", "joint", "unit", "lag_s", "noise", "sample_interval_s", "peak"];
 
 fn read(root: &Path, path: &str, name: Name, columns: &[&str]) -> Result<Vec<Vec<Cell>>, FleetFailure> {
     let columns: Vec<_> = columns.iter().map(|column| tables::column(name, column)).collect();

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     course::{Change, Course},
     history::By,
+    own_change::OwnLevels,
     run::date,
     stepped::LevelStep,
 };
@@ -69,6 +70,9 @@ pub struct JointTrend {
     /// What the level did, before it is judged.
     #[serde(skip)]
     pub(super) course: Option<Course>,
+    /// Its own levels, where what the other machines did is taken off those that are judged.
+    #[serde(skip)]
+    pub(super) own: OwnLevels,
     /// The first runs of other plans, days since 1970, where nothing tells whether the level changed with the plan.
     #[serde(skip)]
     pub(super) untold: Vec<f64>,

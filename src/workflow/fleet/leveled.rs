@@ -6,6 +6,7 @@ use super::{
     blocks::{blocks, centred, count},
     history::{By, Event, Scatters, Values},
     joint_trend::FEWEST_RUNS,
+    own_change::OwnLevels,
     run::{Run, days},
 };
 use crate::math::{column_levels, median, range, row_weights, step_scatter, trend};
@@ -241,6 +242,12 @@ impl Leveled {
         let at = self.levels.iter().map(|level| level.0);
         let found = trend(&at.zip(common.iter().copied()).collect::<Vec<_>>())?;
         (found.p < CHANCE).then_some(found.slope)
+    }
+
+    /// Its levels, where those of all blocks can be compared.
+    pub(super) fn own_levels(&self) -> OwnLevels {
+        let known = self.link.is_some() || count(&self.level_blocks()) < 2;
+        OwnLevels(if known { self.levels.clone() } else { Vec::new() })
     }
 
     /// Less what the other machines did at the same instants.

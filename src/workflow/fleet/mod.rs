@@ -5,6 +5,7 @@
 //! joint; `transitions`, one row a start or reversal; `remarks`; `limits`, what a fit finds in each run; `interventions`. Its files say nothing of when they were made: equal logs
 //! give equal bytes.
 
+mod alike;
 mod arrange;
 mod blocks;
 mod by_day;
@@ -21,6 +22,7 @@ mod found;
 mod gate;
 mod history;
 mod joint_trend;
+mod judged;
 mod leveled;
 mod limits;
 mod link;
@@ -30,9 +32,11 @@ mod note;
 mod once;
 mod one_way;
 mod other_joints;
+mod own_change;
 mod renamed;
 mod run;
 mod scan;
+mod sensed;
 mod sides;
 mod sources;
 mod stepped;
@@ -44,6 +48,7 @@ mod window;
 mod within;
 mod worst;
 
+pub use alike::Alike;
 pub use compact::{Compacted, compact};
 pub use course::Change;
 pub(in crate::workflow) use dated::began_ns;

@@ -62,7 +62,10 @@ struct Found {
     left_out: BTreeSet<PathBuf>,
     /// Folders in folders that this user may not list, as a disk has for its repairs.
     closed: Vec<PathBuf>,
+    archives: Vec<PathBuf>,
 }
+
+const ARCHIVES: [&str; 6] = [".zip", ".7z", ".rar", ".tar", ".tar.gz", ".tgz"];
 
 impl Found {
     fn is_log(&self, name: &str) -> bool {
@@ -104,6 +107,9 @@ pub(super) fn sources(texts: &[String]) -> Result<(Vec<Source>, usize, Vec<Strin
         let closed =
             |path: &PathBuf| format!("{} may not be listed: what lies in it is left out", path.display());
         empty.extend(own.closed.iter().map(closed));
+        let packed =
+            |first: &PathBuf| format!("archives are not looked into, as {}: unpack them", first.display());
+        empty.extend(own.archives.first().map(packed));
         for (path, source) in own.logs {
             found.logs.entry(path).or_insert(source);
         }
@@ -225,6 +231,8 @@ fn walk(folder: &Path, wanted: &mut dyn FnMut(&Path) -> bool, found: &mut Found)
         } else if is.is_file() && wanted(&path) {
             if found.is_log(&name) {
                 put(path, &is, &mut found.logs);
+            } else if ARCHIVES.iter().any(|ending| ends(&name, ending)) {
+                found.archives.push(path);
             } else {
                 found.left_out.extend(TABLES.iter().any(|ending| ends(&name, ending)).then_some(path));
             }

@@ -5,11 +5,12 @@ use serde::{Deserialize, Serialize};
 use super::history::{History, PastRun, WORTH};
 use crate::{fit::MORE_ERROR, series::Series};
 
-/// A mean peak up to this times the least is as good.
+/// A mean peak up to this times the least is as good; up to this, it may be made up for by less error over the whole run.
 const NEARLY: f64 = 1.05;
+const MADE_UP: f64 = 1.25;
 
 /// A correction that is expected to come above the best run by this factor is not worth sending; above the newest, of a machine that goes
-/// on changing.
+/// on changing. Runs of one command scatter by less.
 const WORSE: f64 = 1.1;
 const WORSE_AGAIN: f64 = 1.25;
 
@@ -81,24 +82,37 @@ pub struct Overall {
     pub plain_rms_rad: f64,
     /// What that is below, alike.
     pub plain_p95_rad: f64,
+    /// Both of the corrected run before it that had least; null without one.
+    #[serde(default)]
+    pub before_rad: Option<[f64; 2]>,
 }
 
 impl Overall {
     /// Of a corrected run among others; `None` if it is not corrected, or all are.
-    pub(super) fn of(runs: &[PastRun], run: &PastRun) -> Option<Self> {
-        let plain = runs.iter().filter(|run| !run.corrected);
-        let plain = plain.min_by(|a, b| a.rms_error_rad.total_cmp(&b.rms_error_rad));
-        plain.filter(|_| run.corrected).map(|plain| Self {
-            rms_rad: run.rms_error_rad,
-            p95_rad: run.p95_error_rad,
-            plain_rms_rad: plain.rms_error_rad,
-            plain_p95_rad: plain.p95_error_rad,
-        })
+    pub(super) fn of(runs: &[PastRun], at: usize) -> Option<Self> {
+        let least = |runs: &[PastRun], corrected: bool| {
+            let own = runs.iter().filter(|run| run.corrected == corrected);
+            let least = own.min_by(|a, b| a.rms_error_rad.total_cmp(&b.rms_error_rad));
+            least.map(|run| [run.rms_error_rad, run.p95_error_rad])
+        };
+        let run = runs.get(at).filter(|run| run.corrected)?;
+        let [plain_rms_rad, plain_p95_rad] = least(runs, false)?;
+        let (rms_rad, p95_rad) = (run.rms_error_rad, run.p95_error_rad);
+        Some(Self { rms_rad, p95_rad, plain_rms_rad, plain_p95_rad, before_rad: least(&runs[..at], true) })
     }
 
-    /// Whether the correction left more.
+    /// Whether the correction left more than the plan as it is.
     pub fn is_worse(&self) -> bool {
-        self.rms_rad > MORE_ERROR[0] * self.plain_rms_rad || self.p95_rad > MORE_ERROR[1] * self.plain_p95_rad
+        self.exceeds(MORE_ERROR, [self.plain_rms_rad, self.plain_p95_rad])
+    }
+
+    /// Whether it left more than a correction before it.
+    pub fn is_worse_than_before(&self) -> bool {
+        self.before_rad.is_some_and(|before_rad| self.exceeds([WORSE, WORSE_AGAIN], before_rad))
+    }
+
+    fn exceeds(&self, by: [f64; 2], [rms_rad, p95_rad]: [f64; 2]) -> bool {
+        self.rms_rad > by[0] * rms_rad || self.p95_rad > by[1] * p95_rad
     }
 }
 
@@ -108,8 +122,9 @@ impl History {
         self.runs.iter().enumerate().filter_map(|(k, run)| Some((k, run.mean_peak_rad?))).collect()
     }
 
-    /// The run with the least mean peak, rad, or of those that are nearly as good the one with the least error over the whole run; the
-    /// plan as it is, too, where a correction gained less than a tenth at starts and lost more elsewhere.
+    /// The run with the least mean peak, rad, or of those that are nearly as good the one with the least error over the whole run; an
+    /// earlier correction, too, that had clearly less of that than the later one had less at starts, and the plan as it is where a
+    /// correction gained less than a tenth at starts and lost more elsewhere.
     /// Of what was sent again, the last time counts, and by what that grew all else that was sent before it would have grown.
     fn best(&self) -> Option<(usize, f64)> {
         let peaks_rad = self.peaks_rad();
@@ -123,15 +138,22 @@ impl History {
         let left = peaks_rad.iter().rev().map(|(k, _)| *k);
         let left = left.filter(|k| again(*k).is_none());
         let left: Vec<usize> = left.collect();
+        let left_of_corrections: Vec<usize> =
+            left.iter().copied().filter(|k| self.runs[*k].corrected).collect();
         let least_rad = left.iter().map(|k| peak(*k)).reduce(f64::min)?;
-        let lost =
-            |k: &usize| Overall::of(&self.runs, &self.runs[*k]).is_some_and(|overall| overall.is_worse());
+        let lost = |k: &usize| Overall::of(&self.runs, *k).is_some_and(|overall| overall.is_worse());
+        let rms = |k: usize| now(|run| run.rms_error_rad, k);
         let plain = |k: usize| !self.runs[k].corrected && WORTH * peak(k) <= least_rad;
         let near: Vec<usize> = left.iter().copied().filter(|k| peak(*k) <= NEARLY * least_rad).collect();
         let none_better = near.iter().all(lost);
         let best = left.into_iter().filter(|k| near.contains(k) || none_better && plain(*k));
-        let best = best
-            .min_by(|a, b| now(|run| run.rms_error_rad, *a).total_cmp(&now(|run| run.rms_error_rad, *b)))?;
+        let best = best.min_by(|a, b| rms(*a).total_cmp(&rms(*b)))?;
+        let made_up = left_of_corrections.into_iter().filter(|k| {
+            let [peak, rms] = [peak(*k) / peak(best), rms(*k) / rms(best)];
+            *k < best && peak <= MADE_UP && WORSE * peak * rms < 1.0
+        });
+        let best =
+            made_up.min_by(|a, b| (peak(*a) * rms(*a)).total_cmp(&(peak(*b) * rms(*b)))).unwrap_or(best);
         Some((best, self.runs[best].mean_peak_rad?))
     }
 
@@ -264,9 +286,22 @@ mod tests {
         }
         assert_eq!(history.decision(), kept(2, KeepReason::GainedLittle, 0.746, 0.746));
         history.runs[2].rms_error_rad = 2.1;
-        let overall = Overall::of(&history.runs, &history.runs[2]).unwrap();
+        let overall = Overall::of(&history.runs, 2).unwrap();
         assert!(overall.is_worse() && history.decision() == kept(1, KeepReason::GainedLittle, 0.736, 0.746));
-        assert_eq!(Overall::of(&history.runs, &history.runs[0]), None);
+        assert_eq!(Overall::of(&history.runs, 0), None);
+    }
+
+    #[test]
+    fn a_correction_that_lost_more_over_the_whole_run_than_it_gained_at_starts_is_not_kept() {
+        let mut history = history(&[2.9, 0.78, 0.72]);
+        for (run, rms) in history.runs.iter_mut().zip([2.0, 0.4, 0.51]) {
+            run.rms_error_rad = rms;
+        }
+        assert_eq!(history.decision(), kept(1, KeepReason::GainedLittle, 0.78, 0.72));
+        let overall = Overall::of(&history.runs, 2).unwrap();
+        assert!(overall.is_worse_than_before() && !overall.is_worse());
+        history.runs[2].rms_error_rad = 0.42;
+        assert_eq!(history.decision(), kept(2, KeepReason::GainedLittle, 0.72, 0.72));
     }
 
     fn kept(run: usize, because: KeepReason, best_rad: f64, last_rad: f64) -> Decision {

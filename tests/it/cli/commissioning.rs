@@ -113,6 +113,22 @@ fn a_run_in_which_a_valve_was_dead_teaches_nothing() {
     let next = json(folder, "replan run-0.mcap run-2.mcap dead.csv --keep-plan");
     assert!(next["remarks"].to_string().contains("dead.csv: J3 hardly moves in it"), "{}", next["remarks"]);
     assert_eq!(next["runs"].as_array().unwrap().len(), 2, "{}", next["runs"]);
+    // Nor does it, or a run that was stopped in motion, teach what the machine can do.
+    let rows: Vec<&str> = text.lines().collect();
+    let moving = 1 + rows.len() / 3;
+    let held = rows.iter().enumerate().map(|(k, row)| match row.split_once(',') {
+        Some((time, _)) if k > moving => format!("{time},{}\n", rows[moving].split_once(',').unwrap().1),
+        _ => format!("{row}\n"),
+    });
+    fs::write(folder.join("stopped.csv"), held.collect::<String>()).unwrap();
+    let alone = json(folder, "fit run-0.mcap run-2.mcap");
+    let all = json(folder, "fit run-0.mcap dead.csv stopped.csv run-2.mcap");
+    assert_eq!(alone["joints"], all["joints"]);
+    let remarks = all["remarks"].to_string();
+    assert!(remarks.contains("dead.csv: J3 hardly moves in it"), "{remarks}");
+    assert!(remarks.contains("stopped.csv: its plan stops at once"), "{remarks}");
+    let only = json(folder, "fit stopped.csv");
+    assert!(only["remarks"].to_string().contains("what the stop did is taken for the machine's"), "{only}");
 }
 
 #[test]

@@ -238,6 +238,9 @@ fn what_is_wrong_with_a_question_is_said() {
         assert!(code == 1 && error.contains("build it with `--features cloud`"), "{error}");
     }
     clean(folder.path(), "fleet scan logs --into data");
+    fs::write(folder.path().join("logs/May.zip"), "PK").unwrap();
+    let (code, out, _) = said(&run_line(folder.path(), "fleet scan logs --into data"));
+    assert!(code == 3 && out.contains("archives are not looked into, as logs/May.zip: unpack them"), "{out}");
     let (code, _, error) = said(&run_line(folder.path(), "fleet drift data --machine M01"));
     assert!(code == 1 && error.contains("did you mean \"M00\"?"), "{error}");
     let (code, out, _) = said(&run_line(folder.path(), "fleet drift data"));

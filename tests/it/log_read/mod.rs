@@ -1,6 +1,7 @@
 //! What the reader makes of logs of every kind, sound and broken.
 
 mod alike;
+mod behind;
 mod by_words;
 mod cdr;
 mod choice;

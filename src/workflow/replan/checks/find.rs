@@ -110,8 +110,7 @@ fn limits(replanned: &Replanned, command: Option<&Commanded>) -> Check {
     all.sort_by(|a, b| b.share.total_cmp(&a.share));
     let beyond =
         |by: f64| all.iter().filter(|margin| margin.share > 1.0 + by || margin.share.is_nan()).count();
-    let broken = beyond(BEYOND);
-    let between = beyond(2.0 * BETWEEN) - broken;
+    let (broken, between) = (beyond(BEYOND), beyond(2.0 * BETWEEN) - beyond(BEYOND));
     let mut kinds: Vec<Margin> = Vec::new();
     for margin in &all {
         if kinds.iter().all(|other| other.limit != margin.limit) {
@@ -334,8 +333,9 @@ fn whole(replanned: &Replanned) -> Option<Check> {
     let runs = &replanned.past.runs;
     let joints = replanned.command.iter().flat_map(|command| &command.joints);
     let sure = joints.into_iter().all(|joint| joint.by_chance.is_none());
-    let overall = Overall::of(runs, runs.last()?).filter(|_| sure)?;
-    Some(Check { level: caution(overall.is_worse()), finding: Finding::Whole { overall } })
+    let overall = Overall::of(runs, runs.len().checked_sub(1)?).filter(|_| sure)?;
+    let worse = overall.is_worse() || overall.is_worse_than_before() && !returns(replanned);
+    Some(Check { level: caution(worse), finding: Finding::Whole { overall } })
 }
 
 /// `None` where the command is the plan.
