@@ -43,6 +43,7 @@ mod structure;
 mod swing;
 mod telling;
 mod valve;
+mod zero;
 
 pub use error::FitError;
 pub use estimated::Estimated;

@@ -7,6 +7,12 @@ use super::FitError;
 /// Step of the simulation, s; that of the position loops it stands for.
 pub const STEP_S: f64 = 0.01;
 
+/// Whole steps in a time, rounded down within rounding errors.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a log has few steps")]
+pub(super) fn steps_in(span_s: f64) -> usize {
+    (span_s / STEP_S + 1e-6).clamp(0.0, 1e9) as usize
+}
+
 /// A joint with its valve, its position loop and its sensor, from sent to measured angle.
 ///
 /// The set values, angle and speed, come late by a `delay` and pass a filter of first order. The loop wants a speed

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::{model::STEP_S, simulate::Start};
+pub(super) use super::model::steps_in;
+use super::{model::STEP_S, simulate::Start, zero::shift_rad};
 use crate::{
     series::{Series, Signal, Track, align, local_quadratic, noise},
     units::DEGREE_RAD,
@@ -145,12 +146,6 @@ pub(super) fn sampled(track: &Track, from_s: f64, steps: usize) -> Vec<(f64, f64
     sent
 }
 
-/// Whole steps in a time, rounded down within rounding errors.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a log has few steps")]
-pub(super) fn steps_in(span_s: f64) -> usize {
-    (span_s / STEP_S + 1e-6).clamp(0.0, 1e9) as usize
-}
-
 /// Mean distance of measured samples, s, where a joint is sent through `least_rad` or more and they are too far apart.
 pub(super) fn sparse_s(sent: &Track, measured: &Track, least_rad: f64) -> Option<f64> {
     let pair = align(sent, measured)?;
@@ -164,7 +159,9 @@ pub(super) fn sparse_s(sent: &Track, measured: &Track, least_rad: f64) -> Option
 
 /// Runs of one joint in one log.
 pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
-    let Some(pair) = align(sent, measured) else { return Vec::new() };
+    let Some(mut pair) = align(sent, measured) else { return Vec::new() };
+    let zero_rad = zero_rad(sent, measured);
+    pair.measured.iter_mut().for_each(|measured| *measured -= zero_rad);
     let fits = local_quadratic(&pair.t_s, &pair.measured, &pair.segments, SPEED_WINDOW_S, 5);
     let sigma_rad = noise(&pair.t_s, &pair.measured, &pair.segments).sigma;
     let rounded = pair.planned_step.filter(|_| sent.velocity().is_none());
@@ -227,6 +224,17 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
         }
     }
     runs
+}
+
+/// The zero that a joint was measured from, rad: no loop sees that it is another than that of what was sent.
+fn zero_rad(sent: &Track, measured: &Track) -> f64 {
+    let [Some(from_s), Some(to_s)] = [sent.t_s().first(), sent.t_s().last()].map(Option::<&f64>::copied)
+    else {
+        return 0.0;
+    };
+    let sent = sampled(sent, from_s, steps_in(to_s - from_s) + 1);
+    let off_rad = |k: usize| Some(measured.at(from_s + k as f64 * STEP_S)?.position - sent[k].0);
+    shift_rad(&sent, off_rad)
 }
 
 /// Deviations of noise in the largest of many speeds.
@@ -350,5 +358,23 @@ mod tests {
             let found = starts(&calmed(&sent, step_rad));
             assert!(found.len() == 1 && found[0].abs_diff(100) < 40, "{step_rad}: {found:?}");
         }
+    }
+
+    #[test]
+    fn a_zero_that_is_shifted_is_no_error_and_what_a_joint_is_off_by_at_one_end_is() {
+        // There and back at 0.1 rad/s, 0.2 s late.
+        let along = |t_s: f64| 0.1 * ((t_s - 2.0).clamp(0.0, 3.0) - (t_s - 8.0).clamp(0.0, 3.0));
+        let sent = Track::sampled("boom", 1500, along);
+        let angles = |off: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            let measured = Track::sampled("boom", 1500, |t_s| along(t_s - 0.2) + off(t_s));
+            let found = runs(&sent, &measured);
+            found.iter().flat_map(|run| &run.samples).map(|sample| sample.measured_rad).collect()
+        };
+        let own = angles(&|_| 0.0);
+        let most = |other: &[f64]| own.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let shifted = angles(&|_| 0.05);
+        assert!(own.len() == shifted.len() && most(&shifted) < 1e-9, "{}", most(&shifted));
+        let sinks = angles(&|t_s| if t_s > 7.0 { 0.05 } else { 0.0 });
+        assert!((most(&sinks) - 0.05).abs() < 1e-9, "{}", most(&sinks));
     }
 }

@@ -118,9 +118,17 @@ fn check_joints(text: &str, given: &Spanned<Vec<String>>) -> Result<(), TaskErro
 /// A key without its unit is the commonest slip: say which keys there are.
 fn syntax(message: &str) -> String {
     let mut message = message.trim().replace('\n', " ");
-    if message.contains("unknown field") {
-        message.push_str("; every quantity carries its unit in its key");
-    }
+    let hints = [
+        ("unknown field `fixed_angles`", "; it stands beside the pose, inside tool = { ... }"),
+        ("unknown field", "; every quantity carries its unit in its key"),
+        ("expected a map", ": values by joint are, as speed_deg_s = { J1 = 8, J2 = 12 }"),
+        (
+            "missing field `point`",
+            ": two [[point]] or more, with angles_deg by joint or a tool's pose, make a plan",
+        ),
+    ];
+    let hint = hints.iter().find(|(found, _)| message.contains(found));
+    message.push_str(hint.map_or("", |(_, hint)| hint));
     message
 }
 
@@ -264,5 +272,26 @@ impl Reader<'_> {
             return Err(self.wrong("times_s", given, found, "increasing times are expected"));
         }
         Ok(times.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_of_form_are_told_with_the_form_that_is_expected() {
+        let head = "title = \"x\"\narm = \"a.urdf\"\njoints = [\"J1\"]\n";
+        for (rest, hint) in [
+            (
+                "[[point]]\nangles_deg = { J1 = 0 }\n[limits]\nspeed_deg_s = 8\n",
+                "as speed_deg_s = { J1 = 8, J2 = 12 }",
+            ),
+            ("[limits]\nspeed_deg_s = { J1 = 8 }\n", "two [[point]] or more"),
+            ("[[point]]\nfixed_angles = true\n", "inside tool = { ... }"),
+        ] {
+            let error = Task::parse(&format!("{head}{rest}")).unwrap_err().to_string();
+            assert!(error.contains(hint), "{error}");
+        }
     }
 }

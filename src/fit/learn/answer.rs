@@ -6,10 +6,10 @@ use super::{
     super::{
         model::{Model, STEP_S},
         run::{sampled, steps_in},
+        zero::{moves, rests, shift_rad},
     },
     Trial,
 };
-use crate::units::DEGREE_RAD;
 
 /// Where nothing was measured while the plan moves, an error fades within this, s: what nobody saw teaches nothing.
 const FADES_S: f64 = 0.3;
@@ -17,27 +17,8 @@ const FADES_S: f64 = 0.3;
 /// A plan that stays this close to where it was last measured rests, rad.
 const RESTS_RAD: f64 = 1e-3;
 
-/// Planned speed that is motion, rad/s.
-const MOVES_RAD_S: f64 = 1e-3;
-
-/// A joint that rests this far from its plan before its first motion, and as far after its last one, was measured from
-/// another zero, or its load holds it off, rad: no correction that ends where the plan ends mends that.
-const SHIFTED_RAD: f64 = DEGREE_RAD;
-
-/// The two rests agree within this share.
-const SHIFTED_ALIKE: f64 = 0.2;
-
-/// The same in the mean of all rests, some of which were reached from below and some from above: a dead band leaves a joint now on one
-/// side of its plan and now on the other. They agree within this share where they are three, and where they are more.
-const ALL_SHIFTED_RAD: f64 = 0.3 * DEGREE_RAD;
-const ALL_ALIKE: [f64; 2] = [0.35, 0.6];
-
 /// What a joint does so long after its plan belongs to the run, s.
 pub const AFTER_S: f64 = 4.0;
-
-/// Rest that is looked at on either side, s, and how much of it must have been measured.
-const AT_REST_S: f64 = 0.5;
-const LEAST_AT_REST_S: f64 = 0.2;
 
 /// What was sent to one joint and what came of it, every [`STEP_S`].
 #[derive(Default)]
@@ -85,37 +66,9 @@ impl Answer {
         Some(made)
     }
 
-    /// Finds what the joint was off by at rest, before and after all motion and in between alike.
     fn shift(&mut self, planned: &[(f64, f64)]) {
-        let off_rad = |rest: &Range<usize>| {
-            let last = rest.end.saturating_sub(steps_in(AT_REST_S)).max(rest.start)..rest.end;
-            let seen = || last.clone().filter(|&k| self.seen[k]);
-            let sum: f64 = seen().map(|k| self.measured_rad[k] - planned[k].0).sum();
-            let count = seen().count();
-            (count >= steps_in(LEAST_AT_REST_S)).then(|| sum / count as f64)
-        };
-        let rests = rests(planned);
-        let (Some(first), Some(last)) = (rests.first(), rests.last().filter(|_| rests.len() > 1)) else {
-            return;
-        };
-        let Some([before, after]) = off_rad(first).zip(off_rad(last)).map(<[f64; 2]>::from) else { return };
-        let mean_of = |off_rad: &[f64]| off_rad.iter().sum::<f64>() / off_rad.len() as f64;
-        let ends_rad = mean_of(&[before, after]);
-        if ends_rad.abs() > SHIFTED_RAD && (before - after).abs() < SHIFTED_ALIKE * ends_rad.abs() {
-            self.shifted_rad = ends_rad;
-            return;
-        }
-        let reached = |way: f64| {
-            let mut pairs = rests.windows(2).filter(|two| off_rad(&two[1]).is_some());
-            pairs.any(|two| way * (planned[two[1].start].0 - planned[two[0].start].0) > 0.0)
-        };
-        let all_rad: Vec<f64> = rests.iter().filter_map(off_rad).collect();
-        let mean_rad = mean_of(&all_rad);
-        let alike = ALL_ALIKE[usize::from(all_rad.len() > 3)] * mean_rad.abs();
-        let far = mean_rad.abs() > ALL_SHIFTED_RAD && all_rad.len() > 2;
-        if far && reached(1.0) && reached(-1.0) && all_rad.iter().all(|off| (off - mean_rad).abs() < alike) {
-            self.shifted_rad = mean_rad;
-        }
+        let off_rad = |k: usize| self.seen[k].then(|| self.measured_rad[k] - planned[k].0);
+        self.shifted_rad = shift_rad(planned, off_rad);
     }
 
     /// Planned less measured angles, rad; by the zero that the joint was measured from.
@@ -174,31 +127,12 @@ impl Answer {
     }
 }
 
-/// Where a plan rests: at its beginning and at its end, however shortly, and in between for long enough to tell.
-fn rests(planned: &[(f64, f64)]) -> Vec<Range<usize>> {
-    let (mut rests, mut from) = (Vec::new(), 0);
-    let n = planned.len();
-    while from < n {
-        let end = (from..n).find(|&k| moves(planned, k)).unwrap_or(n);
-        if from == 0 || end == n || end - from >= steps_in(AT_REST_S) {
-            rests.push(from..end);
-        }
-        from = (end..n).find(|&k| !moves(planned, k)).unwrap_or(n);
-    }
-    rests
-}
-
 /// Motions of a plan, each from where it leaves rest to where the next one does.
 pub(super) fn motions(planned: &[(f64, f64)]) -> impl Iterator<Item = Range<usize>> {
     let rests = rests(planned);
     let begins: Vec<usize> = rests.iter().map(|rest| rest.end).filter(|end| *end < planned.len()).collect();
     let ends: Vec<usize> = begins.iter().skip(1).copied().chain([planned.len()]).collect();
     begins.into_iter().zip(ends).map(|(begins, ends)| begins..ends)
-}
-
-/// Whether a plan moves from a step to the next.
-fn moves(planned: &[(f64, f64)], k: usize) -> bool {
-    planned.get(k + 1).is_some_and(|next| (next.0 - planned[k].0).abs() > MOVES_RAD_S * STEP_S)
 }
 
 /// What of the error at instant `from` is left at others, in their order away from it.

@@ -6,10 +6,10 @@ use ::csv::ByteRecord;
 
 use super::{
     CsvOptions,
+    agreed::agree,
     dialect::{Dialect, detect, head},
     label::{Label, label},
     number::{Looks, looks, says_absent},
-    own::agree,
     rows::{Rows, cell_text},
     scale::unit_alone,
 };

@@ -63,8 +63,8 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
     let (name, stated) = parted(header);
     let name = &*name;
     let mut unit = stated.or_else(|| below.and_then(unit_alone));
-    if let Some(own) = unit.and_then(|unit| own(name, unit)) {
-        return own;
+    if let Some(label) = unit.and_then(|unit| of_export(name, unit)) {
+        return label;
     }
     let mut words = words(name);
     let bare = name.trim_matches(|c: char| !c.is_alphanumeric());
@@ -154,6 +154,24 @@ pub(super) fn label(header: &str, below: Option<&str>) -> Label {
         owner,
         lettered,
     }
+}
+
+/// What a header with a unit says in the form of an export.
+fn of_export(name: &str, unit: Unit) -> Option<Label> {
+    let (joint, role, by_words) = own(name)?;
+    let speed = [Measure::AngularSpeed, Measure::LinearSpeed].contains(&unit.measure);
+    Some(Label {
+        role: Some(role),
+        quantity: Some(if speed { Quantity::Velocity } else { Quantity::Position }),
+        unit: Some(unit),
+        stated: Some(unit),
+        words: vec![joint.to_lowercase()],
+        key: joint.to_owned(),
+        joint: joint.to_owned(),
+        by_words: Some(by_words),
+        is_joint: true,
+        ..Label::default()
+    })
 }
 
 pub(super) fn is_place(text: &str) -> bool {

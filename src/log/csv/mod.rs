@@ -3,6 +3,7 @@
 //! `dialect` finds separator and mark, `head` names, `label` what they say, `clock` the time, `layout` joints; [`CsvOptions`] say the rest.
 
 mod again;
+mod agreed;
 mod behind;
 mod by_column;
 mod by_meaning;

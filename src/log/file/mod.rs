@@ -5,6 +5,7 @@
 mod block;
 mod compression;
 mod held;
+mod layout;
 mod lz4;
 mod record;
 mod scan;
@@ -15,10 +16,11 @@ mod walk;
 
 pub(super) use block::{Block, Blocks, Loss, records};
 pub(super) use held::Held;
+pub(super) use layout::Layout;
 pub(super) use record::{ChannelRecord, MessageRecord, Opcode, SchemaRecord};
 #[cfg(feature = "parquet")]
 pub(super) use scan::MAGIC;
-pub(super) use scan::{Layout, scan};
+pub(super) use scan::scan;
 pub use source::ReadAt;
 pub(super) use source::Source;
 pub(super) use span::Span;

@@ -81,6 +81,15 @@ impl Aim {
         Self { merit, scale: 1.0, ceilings: Ceilings::NONE, pace: Pace::Fastest, guard: 1.0 }
     }
 
+    /// The least time within ceilings, whether or not the start keeps them.
+    pub(super) fn faster(ceilings: &Ceilings) -> Self {
+        if [Objective::RmsJerk, Objective::RmsPower].iter().all(|k| ceilings[*k].is_infinite()) {
+            return Self::fastest();
+        }
+        let ceilings = ceilings.map_plan(|k| ceilings[k] * (1.0 - SLOWED));
+        Self { ceilings, pace: Pace::Sought, ..Self::fastest() }
+    }
+
     /// Of a plan; the less the better.
     pub(super) fn merit(&self, objectives: &Objectives) -> f64 {
         self.scale * self.merit.of(objectives) + SETTLE * objectives[Objective::RmsJerk].ln()

@@ -117,7 +117,7 @@ pub fn fastest_shape(
     ceilings: &Ceilings,
     pieces: Option<usize>,
 ) -> Result<Shape, NoShape> {
-    sought(setup, timing, Aim::fastest(), ceilings, pieces)
+    sought(setup, timing, Aim::faster(ceilings), ceilings, pieces)
 }
 
 /// Where a descent begins.

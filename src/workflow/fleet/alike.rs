@@ -84,32 +84,3 @@ fn of_metric(metric: By, joints: &[&Leveled]) -> Vec<Alike> {
     });
     told.filter(|one| 2 * one.shared_by > one.of).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::drift::tests::{fleet, judged_alike};
-
-    #[test]
-    fn what_most_machines_did_within_days_is_told_and_what_a_few_did_is_not() {
-        // Dead times of some 0.23 s.
-        let of = |stepping: u32, by_s: f64| {
-            let more = move |machine: u32, day: u32, _: usize| {
-                (if machine < stepping && day >= 6 + machine % 3 { by_s } else { 0.0 }, "p")
-            };
-            judged_alike(&fleet(1, 12, more))
-        };
-        for by_s in [0.1, -0.1] {
-            let found = of(10, by_s);
-            let [one] = found.as_slice() else { panic!("{found:?}") };
-            assert!((one.change - by_s / 0.23).abs() < 0.15 && one.of == 12, "{one:?}");
-            assert_eq!(
-                (one.shared_by, &one.others[..]),
-                (10, &["M10".to_owned(), "M11".to_owned()][..]),
-                "{one:?}"
-            );
-            assert!(one.after.as_deref().is_some_and(|at| at < "2024-10-11"), "{one:?}");
-        }
-        assert_eq!(of(3, 0.1), [], "of three");
-        assert_eq!(of(0, 0.0), [], "of none");
-    }
-}

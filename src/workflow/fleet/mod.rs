@@ -23,6 +23,8 @@ mod gate;
 mod history;
 mod joint_trend;
 mod judged;
+#[cfg(test)]
+mod laws;
 mod leveled;
 mod limits;
 mod link;

@@ -40,38 +40,7 @@ fn shows(own: f64, found: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{
-        super::{
-            drift::tests::{fleet, found},
-            joint_trend::JointTrend,
-        },
-        *,
-    };
-
-    /// What is found of twelve machines, over some fleets: each changes by its own part of so much, on its own day of three, s; the
-    /// last three do not.
-    fn of_fleets(by_s: f64) -> Vec<JointTrend> {
-        let more = |machine: u32, day: u32| {
-            let part = if machine < 9 { 0.6 + 0.1 * f64::from(machine) } else { 0.0 };
-            if day >= 6 + machine % 3 { part * by_s } else { 0.0 }
-        };
-        (0..5).flat_map(|seed| found(&fleet(seed, 12, |machine, day, _| (more(machine, day), "p")))).collect()
-    }
-
-    fn is_sound(trend: &JointTrend) -> bool {
-        ["M9", "M10", "M11"].contains(&trend.machine.as_str())
-    }
-
-    #[test]
-    fn where_most_machines_changed_the_others_did_nothing_and_where_they_became_better_none_grows() {
-        for by_s in [0.12, -0.12] {
-            let found = of_fleets(by_s);
-            let sound: Vec<&JointTrend> = found.iter().filter(|trend| is_sound(trend)).collect();
-            assert!(sound.is_empty(), "{by_s}: {sound:?}");
-            let grown = found.iter().filter(|trend| by_s < 0.0 && trend.growth_per_day() > 0.0).count();
-            assert_eq!(grown, 0, "{by_s}: {found:?}");
-        }
-    }
+    use super::*;
 
     #[test]
     fn a_change_is_there_where_own_levels_go_that_way() {

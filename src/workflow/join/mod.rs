@@ -100,7 +100,7 @@ pub enum JoinFailure {
     )]
     SentOtherwise { plan: PathBuf, topic: String, at_s: f64, share: f64 },
     #[error(
-        "what was sent on {topic} is the plan of {} with {:.0} % of the correction of its command: another command of that plan was sent, \
+        "what was sent on {topic} is the plan of {} with about {:.0} % of the correction of its command: another command of that plan was sent, \
          such as one of another --gain, and what it promised is another; give the log that was sent",
         plan.display(), 100.0 * share
     )]

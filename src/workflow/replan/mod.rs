@@ -58,7 +58,7 @@ use super::fit;
 use crate::{
     fit::{Fit, JointFit},
     log::Recording,
-    plan::{PlanEvaluation, Setup, Timing},
+    plan::{PlanEvaluation, Setup, Timing, fastest},
     remark::{Code, Remarks},
     task::{Ceilings, Objective, Objectives},
     workflow::{correctable::uncorrectable, names::told_apart, plan::Shaping},
@@ -255,10 +255,17 @@ fn searched(
     }
     let best = &found.front[..found.front.len().min(CANDIDATES)];
     let known = start.as_deref().filter(|_| last.shaping() == Shaping::Timing);
-    let plans = shape::shaped(&setup, best, (start.as_deref(), known), &ceilings, shaping)?;
+    // A free shape begins at some times, however slow, where neither the last ones are known nor others are within what is allowed.
+    let some = || fastest(&setup, inputs.evaluations / FOR_SOME).map(|timing| timing.interval_s);
+    let none = start.is_none() && best.is_empty() && shaping != Shaping::Timing;
+    let from = if none { some() } else { start.clone() };
+    let plans = shape::shaped(&setup, best, (from.as_deref(), known), &ceilings, shaping)?;
     let retime::Timings { front, evaluations } = found;
     Ok(Search { front, plans, shaping, evaluations, ceilings, held, evaluation })
 }
+
+/// Share of the evaluations for times that a free shape begins at.
+const FOR_SOME: u64 = 10;
 
 /// Timings in their order, those first that ask for no more than joints share.
 fn within_shared(fit: &Fit, setup: &Setup, front: Vec<Timing>) -> Result<Vec<Timing>, ReplanFailure> {

@@ -211,6 +211,18 @@ fn limited(command: &Commanded, remarks: &mut Remarks) {
     }
 }
 
+/// What is said where the last plan, slowed down to the fitted limits, takes longer between two key points than its task allows, s.
+fn longer(search: &Search, most_s: f64) -> Option<String> {
+    let evaluation = search.evaluation.as_ref()?;
+    let needed_s = evaluation.slower()? * evaluation.interval_s.iter().copied().fold(0.0, f64::max);
+    (needed_s > most_s).then(|| {
+        format!(
+            "its task allows {most_s:.2} s at most between two key points, and {needed_s:.2} s are needed: a larger interval_s there, and \
+             --max-time-growth-percent"
+        )
+    })
+}
+
 pub(super) fn replanned(
     (fit, fitted_to): (Fit, Vec<String>),
     (last, delay_known): (Last, bool),
@@ -234,9 +246,10 @@ pub(super) fn replanned(
             Shaping::Timing => ("timing", ", --shape free another shape"),
             Shaping::Free(_) => ("plan", ""),
         };
+        let longer = last.request.as_ref().and_then(|request| longer(search, request.task.interval_s[1]));
+        let gives = longer.unwrap_or_else(|| format!("--max-time-growth-percent gives it more{shape}"));
         let message = format!(
-            "no {what} keeps the fitted limits within the time, jerk and power that are allowed: the plan stays; \
-             --max-time-growth-percent gives it more{shape}"
+            "no {what} was found that keeps the fitted limits within the time, jerk and power that are allowed: the plan stays; {gives}"
         );
         remarks.add(Code::BeyondLimit, 1, message);
     }

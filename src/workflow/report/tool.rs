@@ -4,8 +4,10 @@ use super::Inputs;
 use crate::{
     arm::{ArmError, Kinematics},
     log::Recording,
+    math::range,
     replay::{Rules, ToolPath, ToolReplay, pose_replay, tool_replay},
     series::{JointKind, Pair, PosePair},
+    units::DEGREE_RAD,
     workflow::carried::Carried,
 };
 
@@ -19,6 +21,8 @@ pub enum Tool {
     Unplaced(ArmError),
     /// The arm's joints are never known at one instant.
     Apart,
+    /// It stays in one place, measured and planned, though joints move: its frame lies on their axes.
+    OnAxes,
     /// The tool against its plan, and its way for plots.
     Placed(Box<ToolReplay>, ToolPath),
 }
@@ -37,6 +41,11 @@ impl Tool {
         match self {
             Self::Unplaced(why) => Some(why.to_string()),
             Self::Apart => Some("the joints of the arm share no instant".to_owned()),
+            Self::OnAxes => Some(
+                "its frame stays in one place though joints move, for it lies on their axes: --tool LINK, or --urdf with a link at the end of \
+                 what they carry, tells it"
+                    .to_owned(),
+            ),
             Self::NoArm | Self::Placed(..) => None,
         }
     }
@@ -51,10 +60,30 @@ impl Tool {
         match arm {
             None => Self::NoArm,
             Some(Err(why)) => Self::Unplaced(why),
-            Some(Ok(arm)) => tool_replay(&arm, pairs, rules)
-                .map_or(Self::Apart, |(found, path)| Self::Placed(Box::new(found), path)),
+            Some(Ok(arm)) => match tool_replay(&arm, pairs, rules) {
+                None => Self::Apart,
+                Some((_, path)) if stays(&path) && pairs.iter().any(moves) => Self::OnAxes,
+                Some((found, path)) => Self::Placed(Box::new(found), path),
+            },
         }
     }
+}
+
+/// A tool that goes no farther stays, m; a joint that goes farther moves, rad or m.
+const STAYS_M: f64 = 1e-4;
+const MOVES: f64 = DEGREE_RAD;
+
+fn stays(path: &ToolPath) -> bool {
+    (0..3).all(|axis| {
+        let places = path.planned_m.iter().chain(&path.measured_m).map(|place| place[axis]);
+        let [low, high] = range(places);
+        high - low < STAYS_M
+    })
+}
+
+fn moves(pair: &Pair) -> bool {
+    let [low, high] = range(pair.planned.iter().chain(&pair.measured).copied());
+    high - low > MOVES
 }
 
 /// What stands for the URDF of a log in errors.

@@ -41,9 +41,9 @@ const HELPED: f64 = 0.75;
 
 pub(super) fn all(replanned: &Replanned) -> impl Iterator<Item = Check> {
     let command = replanned.command.as_ref().filter(|command| command.applied());
-    let plan = &replanned.plan;
-    let sent = command.map_or(plan, |command| &command.series);
-    let always = [ends(plan, sent), rest(sent, command), limits(replanned, command), trust(replanned)];
+    let sent = command.map_or(&replanned.plan, |command| &command.series);
+    let always =
+        [ends(&replanned.plan, sent), rest(sent, command), limits(replanned, command), trust(replanned)];
     let others = [
         newest(replanned),
         together(replanned).or_else(|| too_fast(replanned)),
@@ -331,8 +331,7 @@ fn outlook(replanned: &Replanned) -> Check {
 /// `None` unless the last run was corrected, and one was not, and where something came in it by chance.
 fn whole(replanned: &Replanned) -> Option<Check> {
     let runs = &replanned.past.runs;
-    let joints = replanned.command.iter().flat_map(|command| &command.joints);
-    let sure = joints.into_iter().all(|joint| joint.by_chance.is_none());
+    let sure = replanned.command.iter().flat_map(|c| &c.joints).all(|joint| joint.by_chance.is_none());
     let overall = Overall::of(runs, runs.len().checked_sub(1)?).filter(|_| sure)?;
     let worse = overall.is_worse() || overall.is_worse_than_before() && !returns(replanned);
     Some(Check { level: caution(worse), finding: Finding::Whole { overall } })
@@ -364,7 +363,7 @@ fn leave(replanned: &Replanned, command: Option<&Commanded>) -> Option<Check> {
     Some(Check { level: if elsewhere { Level::Stop } else { caution(wide) }, finding })
 }
 
-/// Largest distance of the tool from where the plan has it, m.
+/// Largest distance of the tool from where the plan has it, m; `None` of one that lies on the joints' axes, and goes less than 0.1 mm.
 fn tool_m(replanned: &Replanned, sent: &Series) -> Option<f64> {
     let setup = &replanned.request.as_ref()?.setup;
     let of = |series: &Series| -> Option<Vec<Track>> {
@@ -376,7 +375,8 @@ fn tool_m(replanned: &Replanned, sent: &Series) -> Option<f64> {
         let angle_rad: Vec<f64> = side.iter().map(|track| track.held_at(t_s).position).collect();
         setup.arm().chain.tool_pose(&angle_rad).translation.vector
     };
-    Some(most(t_s.iter().map(|t_s| (place(&sides[0], *t_s) - place(&sides[1], *t_s)).norm())))
+    let off_m = most(t_s.iter().map(|t_s| (place(&sides[0], *t_s) - place(&sides[1], *t_s)).norm()));
+    (off_m.is_nan() || off_m > 1e-4).then_some(off_m)
 }
 
 /// `None` where nothing is corrected.
