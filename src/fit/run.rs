@@ -5,7 +5,7 @@ use std::ops::Range;
 pub(super) use super::model::steps_in;
 use super::{model::STEP_S, simulate::Start, zero::shift_rad};
 use crate::{
-    series::{Series, Signal, Track, align, local_quadratic, noise},
+    series::{Pair, Series, Signal, Track, align, local_quadratic, noise},
     units::DEGREE_RAD,
 };
 
@@ -160,7 +160,7 @@ pub(super) fn sparse_s(sent: &Track, measured: &Track, least_rad: f64) -> Option
 /// Runs of one joint in one log.
 pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
     let Some(mut pair) = align(sent, measured) else { return Vec::new() };
-    let zero_rad = zero_rad(sent, measured);
+    let zero_rad = zero_rad(&pair, sent, measured);
     pair.measured.iter_mut().for_each(|measured| *measured -= zero_rad);
     let fits = local_quadratic(&pair.t_s, &pair.measured, &pair.segments, SPEED_WINDOW_S, 5);
     let sigma_rad = noise(&pair.t_s, &pair.measured, &pair.segments).sigma;
@@ -227,14 +227,17 @@ pub(super) fn runs(sent: &Track, measured: &Track) -> Vec<Run> {
 }
 
 /// The zero that a joint was measured from, rad: no loop sees that it is another than that of what was sent.
-fn zero_rad(sent: &Track, measured: &Track) -> f64 {
-    let [Some(from_s), Some(to_s)] = [sent.t_s().first(), sent.t_s().last()].map(Option::<&f64>::copied)
-    else {
-        return 0.0;
-    };
-    let sent = sampled(sent, from_s, steps_in(to_s - from_s) + 1);
-    let off_rad = |k: usize| Some(measured.at(from_s + k as f64 * STEP_S)?.position - sent[k].0);
-    shift_rad(&sent, off_rad)
+fn zero_rad(pair: &Pair, sent: &Track, measured: &Track) -> f64 {
+    let (mut t_s, mut planned) = (Vec::new(), Vec::new());
+    for segment in &pair.segments {
+        let (from_s, to_s) = (pair.t_s[segment.start], pair.t_s[segment.end - 1]);
+        if to_s - from_s <= SPARSEST_S * segment.len() as f64 {
+            let steps = steps_in(to_s - from_s) + 1;
+            planned.extend(sampled(sent, from_s, steps));
+            t_s.extend((0..steps).map(|k| from_s + k as f64 * STEP_S));
+        }
+    }
+    shift_rad(&planned, |k| Some(measured.at(t_s[k])?.position - planned[k].0))
 }
 
 /// Deviations of noise in the largest of many speeds.

@@ -1,12 +1,12 @@
 //! What a free shape reaches on the sample tasks, judged by a dense look that shares no code with the descent.
 
-use super::{NoShape, Shape, shape};
+use super::{NoShape, Shape, fastest_shape, shape};
 use crate::{
     arm::Arm,
     moea::Budget,
     plan::{
-        BETWEEN, Choice, Evaluator, Limit, PlanEvaluation, Rule, Search, Setup, choose, points::states,
-        search,
+        BETWEEN, Choice, Evaluator, Limit, PlanEvaluation, Rule, Search, Setup, Timing, choose,
+        points::states, search,
     },
     spline::{Motion, Quantity, Segment},
     task::{Ceilings, Objective, Place, Task},
@@ -130,6 +130,27 @@ fn the_fastest_shape_is_far_faster_than_any_timing_and_keeps_every_limit_between
         let duration_s = found.evaluation.objectives[Objective::Duration];
         println!("{name}: {duration_s:.4} s, {} pieces, {} steps", found.pieces, found.steps);
         assert!(duration_s <= most_s, "{name}: {duration_s}");
+        check(&setup, &found, &motion(&setup, &found));
+    }
+}
+
+#[test]
+fn where_no_timing_keeps_the_limits_the_fastest_shape_within_a_ceiling_is_a_slower_one() {
+    let setup = setup(TASKS[0].1);
+    let choice = chosen(&setup, Rule::Best(Objective::Duration), &Ceilings::NONE);
+    // Twice as fast as the fastest: no limit is kept.
+    let interval_s: Vec<f64> = choice.timing.interval_s.iter().map(|s| 0.5 * s).collect();
+    let PlanEvaluation { objectives, .. } = PlanEvaluation::of(&setup, &setup.times_s(&interval_s)).unwrap();
+    let timing = Timing { interval_s, objectives, violation: 1.0 };
+    let free = fastest_shape(&setup, &timing, &Ceilings::NONE, None).unwrap().evaluation.objectives;
+    for (objective, power) in [(Objective::RmsJerk, 3.0), (Objective::RmsPower, 1.0)] {
+        let most = 0.8 * free[objective];
+        let found = fastest_shape(&setup, &timing, &Ceilings::NONE.with(objective, most), None).unwrap();
+        let objectives = found.evaluation.objectives;
+        // The same shape more slowly.
+        let slowed_s = free[Objective::Duration] * 0.8_f64.powf(-1.0 / power);
+        println!("{objective:?}: {:.3} s, {slowed_s:.3} s the same slowed", objectives[Objective::Duration]);
+        assert!(objectives[objective] <= most && objectives[Objective::Duration] < 1.01 * slowed_s);
         check(&setup, &found, &motion(&setup, &found));
     }
 }

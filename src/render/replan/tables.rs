@@ -5,7 +5,10 @@ use crate::{
     log::Topics,
     math::mean,
     render::{
-        kit::{Block, Column, Document, Fact, Id, NONE, Section, Sentence, Table, fact, optional, some_of},
+        kit::{
+            Block, Column, Document, Fact, Id, NONE, Section, Sentence, Table, counted, fact, optional,
+            some_of,
+        },
         metric::{Units, number, position, unit},
     },
     replay::Dimension,
@@ -127,12 +130,15 @@ fn expected(replanned: &Replanned) -> Table {
 pub(super) fn levers(replanned: &Replanned) -> Vec<Fact> {
     let plan = match (&replanned.search, replanned.retimed, &replanned.evaluation) {
         (None, ..) => "unchanged".to_owned(),
-        (Some(search), false, _) if search.front.is_empty() => {
+        (Some(search), false, _) if search.front.is_empty() && search.plans.is_empty() => {
             "unchanged: no timing was found within the allowed time, jerk and power".to_owned()
         }
         (Some(search), false, _) => format!(
-            "unchanged: none of {} timings within the allowed time, jerk and power has a smaller expected error",
-            search.front.len()
+            "unchanged: none of {} within the allowed time, jerk and power has a smaller expected error",
+            match search.front.len() {
+                0 => counted(search.plans.len(), "free shape"),
+                timings => counted(timings, "timing"),
+            }
         ),
         (Some(search), true, evaluation) => {
             let times = evaluation.as_ref().map_or_else(String::new, |evaluation| {

@@ -5,8 +5,8 @@ use super::sources;
 /// Lines of the longest file; of half the files of `src` at most; of `src` and of all Rust together.
 const LONGEST: usize = 400;
 const MEDIAN: usize = 125;
-const LIBRARY: usize = 116_900;
-const ALL: usize = 161_500;
+const LIBRARY: usize = 117_100;
+const ALL: usize = 161_800;
 
 const FOLDERS: [&str; 6] = ["src", "crates", "tests", "benches", "examples", "fuzz"];
 

@@ -31,7 +31,7 @@ fn another_command_of_the_same_plan_is_refused_with_its_share_at_a_given_time_to
         let run = hydrotrace(at, &line);
         let said = stderr(&run);
         assert!(run.status.code() == Some(1) && !at.join("joined.mcap").exists(), "{line}: {said}");
-        let (_, share) = said.split_once("with ").unwrap_or_default();
+        let (_, share) = said.split_once("with about ").unwrap_or_default();
         let share: f64 = share.split(' ').next().and_then(|share| share.parse().ok()).unwrap_or(f64::NAN);
         assert!((share - 50.0).abs() < 5.0 && said.contains("--gain"), "{line}: {said}");
     }
