@@ -1,12 +1,12 @@
 //! Levenberg-Marquardt over all runs of a joint, with Huber's weights and priors.
 
 use super::{
-    model::Model,
     model::STEP_S,
+    model::{Model, steps_in},
     normal::{Normal, Row, WIDTH},
     parameters::{Priors, SHARED, STICTION, Shown},
     robust::{cost, inefficiency, scale, weight},
-    run::{ASKED_OVER_S, Run, Sample, steps_in},
+    run::{ASKED_OVER_S, Run, Sample},
     simulate::{LANES, Start, simulate, simulate_lanes},
 };
 use crate::{math::deviation, units::DEGREE_RAD};

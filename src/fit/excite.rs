@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{FitError, model::STEP_S, run::steps_in};
+use super::{
+    FitError,
+    model::{STEP_S, steps_in},
+};
 use crate::{
     series::{JointKind, Series, Track},
     units::DEGREE_RAD,

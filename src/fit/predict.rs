@@ -2,8 +2,8 @@
 
 use super::{
     FitError, Model,
-    model::STEP_S,
-    run::{sampled, steps_in},
+    model::{STEP_S, steps_in},
+    run::sampled,
     simulate::{Start, simulate},
 };
 use crate::series::Track;

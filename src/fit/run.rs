@@ -2,8 +2,11 @@
 
 use std::ops::Range;
 
-pub(super) use super::model::steps_in;
-use super::{model::STEP_S, simulate::Start, zero::shift_rad};
+use super::{
+    model::{STEP_S, steps_in},
+    simulate::Start,
+    zero::shift_rad,
+};
 use crate::{
     series::{Pair, Series, Signal, Track, align, local_quadratic, noise},
     units::DEGREE_RAD,

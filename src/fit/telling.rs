@@ -1,6 +1,6 @@
 //! Which runs of long logs to look at first.
 
-use super::run::{Run, steps_in};
+use super::{model::steps_in, run::Run};
 
 /// Which runs tell enough: all, or of long logs some that are spread evenly, and those that reached or were asked
 /// for most.

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::{model::STEP_S, run::steps_in};
+use super::model::{STEP_S, steps_in};
 use crate::{math::mean, units::DEGREE_RAD};
 
 /// Planned speed that is motion, rad/s.

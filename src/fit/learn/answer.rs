@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::{
     super::{
-        model::{Model, STEP_S},
-        run::{sampled, steps_in},
+        model::{Model, STEP_S, steps_in},
+        run::sampled,
         zero::{moves, rests, shift_rad},
     },
     Trial,

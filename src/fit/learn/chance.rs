@@ -6,10 +6,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    super::{
-        model::{Model, STEP_S},
-        run::steps_in,
-    },
+    super::model::{Model, STEP_S, steps_in},
     answer::{Answer, motions},
     correct::{Workspace, largest, unexplained_rad},
 };

@@ -2,8 +2,7 @@
 
 use super::{
     super::{
-        model::{Model, STEP_S},
-        run::steps_in,
+        model::{Model, STEP_S, steps_in},
         simulate::{Start, simulate},
     },
     answer::Answer,

@@ -27,8 +27,8 @@ pub use stop::Stop;
 
 use super::{
     Fit, FitError,
-    model::STEP_S,
-    run::{MOVES_RAD_S, steps_in},
+    model::{STEP_S, steps_in},
+    run::MOVES_RAD_S,
 };
 use serde::{Deserialize, Serialize};
 

@@ -84,7 +84,7 @@ fn at_end(planned: &[(f64, f64)], answers: &[Answer], side: f64) -> Option<Stop>
 /// What values are beyond for [`STANDS_S`] in all.
 fn farthest(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.collect();
-    let place = values.len().checked_sub(super::super::run::steps_in(STANDS_S))?;
+    let place = values.len().checked_sub(super::super::model::steps_in(STANDS_S))?;
     (place < values.len()).then(|| *values.select_nth_unstable_by(place, f64::total_cmp).1)
 }
 
@@ -101,7 +101,7 @@ mod tests {
             };
             40.0 * DEGREE_RAD * (step(2.0) - step(9.0))
         };
-        let count = super::super::super::run::steps_in(15.0);
+        let count = super::super::super::model::steps_in(15.0);
         (0..count).map(|k| (at(k as f64 * STEP_S), 0.0)).collect()
     }
 
