@@ -201,6 +201,14 @@ impl Hydraulics {
     pub fn pump_flow_m3_s(&self) -> f64 {
         self.pump_flow_m3_s
     }
+
+    /// With a pump that gives no more than so much, m³/s; what is no flow above zero changes nothing.
+    pub fn with_pump_flow_m3_s(mut self, most: f64) -> Self {
+        if most > 0.0 {
+            self.pump_flow_m3_s = self.pump_flow_m3_s.min(most);
+        }
+        self
+    }
 }
 
 /// An arm: its mechanics and what drives it.

@@ -82,7 +82,18 @@ fn nesting(text: &str, at: &Witness<'_>) -> Result<usize, ArmError> {
     let mut reader = Reader::from_str(text);
     let (mut depth, mut deepest) = (0_usize, 0);
     loop {
-        match reader.read_event().map_err(|error| at.syntax(&error))? {
+        let event = reader.read_event().map_err(|error| at.syntax(&error))?;
+        if let Event::Start(element) | Event::Empty(element) = &event
+            && element.name().as_ref().starts_with(b"xacro:")
+        {
+            let name = String::from_utf8_lossy(element.name().as_ref()).into_owned();
+            return Err(at.unexpected(
+                format!("<{name}>"),
+                "xacro, which is no URDF yet",
+                "what xacro makes of it",
+            ));
+        }
+        match event {
             Event::Start(_) => depth += 1,
             Event::End(_) => depth = depth.saturating_sub(1),
             Event::Eof if depth == 0 => return Ok(deepest),
@@ -144,6 +155,11 @@ impl<'a> Tree<'a> {
         Ok(Self { at, robot, links, above, below, root })
     }
 
+    fn leads_to(&self, link: &str) -> bool {
+        let parent = |link: &&str| self.above.get(link).map(|joint| joint.parent.link.as_str());
+        std::iter::successors(Some(link), parent).take(self.links.len()).any(|link| link == self.root)
+    }
+
     fn children(&self, link: &str) -> &[&'a robot::Joint] {
         self.below.get(link).map_or(&[], Vec::as_slice)
     }
@@ -155,6 +171,12 @@ impl<'a> Tree<'a> {
                 let names: Vec<&str> = self.links.keys().copied().collect();
                 self.at.unexpected("tool", wanted, format!("a link of this file ({})", names.join(", ")))
             });
+        }
+        let ring: Vec<&str> = self.links.keys().copied().filter(|link| !self.leads_to(link)).collect();
+        if !ring.is_empty() {
+            let found =
+                format!("a ring of joints, to which nothing leads from {:?}: {}", self.root, ring.join(", "));
+            return Err(self.at.unexpected("<robot>", found, "one link that leads to all others"));
         }
         let leaves = self.links.keys().copied().filter(|name| self.children(name).is_empty());
         // Frames of the base are moved by nothing; where nothing moves, each may be meant.

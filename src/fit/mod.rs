@@ -40,6 +40,7 @@ mod simulate;
 mod skill;
 mod start_error;
 mod structure;
+mod supply;
 mod swing;
 mod telling;
 mod valve;
@@ -63,6 +64,7 @@ pub use run::{Observation, SPARSEST_S};
 pub use shared::{SharedJoint, SharedLimit};
 pub use skill::{MOST_MARGIN, STARTS as MARGIN_STARTS};
 pub use start_error::{PredictedStart, StartErrorPredictor};
+pub use supply::{Fed, Supply, supply};
 
 use crate::{
     series::{JointKind, Track},
@@ -217,7 +219,6 @@ pub fn fit_and_held_out(logs: &[Observation]) -> Result<(Fit, Vec<HeldOut>), Fit
             joint.makes_alone(sharing.alone_rad_s);
         }
     }
-    let fit =
-        Fit { joints, left_out, margin_starts: ratios.len(), peak_margin: skill::margin(ratios), shared };
-    Ok((fit, held_out))
+    let (margin_starts, peak_margin) = (ratios.len(), skill::margin(ratios));
+    Ok((Fit { joints, left_out, margin_starts, peak_margin, shared, supply: None }, held_out))
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Estimated, FitError, Model, SharedLimit, skill::MOST_MARGIN};
+use super::{Estimated, FitError, Model, SharedLimit, Supply, skill::MOST_MARGIN};
 use crate::series::JointKind;
 
 /// Held-out skill below which no command should be made from a model.
@@ -35,6 +35,9 @@ pub struct Fit {
     /// The limit that joints share, such as a pump, where the logs show one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shared: Option<SharedLimit>,
+    /// The supply, where its pressure was logged and fell while joints moved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub supply: Option<Supply>,
 }
 
 /// A joint that cannot be fitted, for it was hardly sent anywhere while it was measured.

@@ -17,6 +17,8 @@ use crate::{
 
 /// Angles as close as this are one, rad.
 const ROUNDED_RAD: f64 = 1e-9;
+/// Key points lie at the end of a range from so near, as a share of it: numbers of a task are rounded.
+const ROUNDED: f64 = 1e-5;
 /// Key points that differ by less are equal, rad or m.
 const EQUAL_RAD: f64 = 1e-6;
 
@@ -293,7 +295,9 @@ fn range_ends(points: &KeyPoints, dwell_s: &[Option<f64>], range_rad: &[[f64; 2]
     let turns = |point: usize, joint: usize, [lower, upper]: [f64; 2]| {
         let [before, angle, after] = [point - 1, point, point + 1].map(|point| points.of(point)[joint]);
         let moves = (angle - before).abs() > ROUNDED_RAD || (angle - after).abs() > ROUNDED_RAD;
-        moves && (angle <= lower + ROUNDED_RAD || angle >= upper - ROUNDED_RAD)
+        let near =
+            ROUNDED_RAD.max(if upper - lower < f64::INFINITY { ROUNDED * (upper - lower) } else { 0.0 });
+        moves && (angle <= lower + near || angle >= upper - near)
     };
     let stops = |point: usize| range_rad.iter().enumerate().any(|(joint, range)| turns(point, joint, *range));
     (1..points.len() - 1).filter(|&point| dwell_s[point].is_none() && stops(point)).collect()

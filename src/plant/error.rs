@@ -51,8 +51,8 @@ pub enum PlantError {
     )]
     UnknownPreset { name: String, nearest: Option<String>, known: String },
     #[error(
-        "the plant is for the joints {plant}, the arm has {arm}: give a plant file with these joints in this order; \
-         sample-logs/plant/default.toml in the repository is one to start from"
+        "the plant is for the joints {plant}, the arm has {arm}: give a plant file without base, with these joints in this order \
+         and every number; sample-logs/plant/default.toml in the repository is one to start from"
     )]
     OtherArm { plant: String, arm: String },
     #[error("joint {joint} has no cylinder; give it one in the arm's file of cylinders")]

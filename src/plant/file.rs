@@ -134,7 +134,9 @@ fn begin(text: &str, file: &File) -> Result<Parameters, PlantError> {
         }
         (Some(_), Some(given)) => refuse(
             given.span(),
-            "joints: found beside base; they are those of the base: leave them out".into(),
+            "joints: found beside base, whose joints are those of the sample arm: leave them out, or give every number \
+             of a machine with other joints in place of base, as sample-logs/plant/default.toml does"
+                .into(),
         ),
         (None, None) => refuse(0..0, "missing field `joints`".into()),
     }

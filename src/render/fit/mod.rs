@@ -1,10 +1,12 @@
 //! What a fit found: tables, JSON, and the file that brings it back.
 
 mod page;
+mod supply;
 mod tables;
 
 pub(super) use page::fitted;
 pub(crate) use page::page;
+pub(in crate::render) use supply::{litres, supply};
 pub(crate) use tables::document;
 pub(in crate::render) use tables::shared;
 

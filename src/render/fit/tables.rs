@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::Shown;
+use super::{Shown, supply};
 use crate::{
     fit::{
         Estimated, Fit, JointFit, LEAST_SHARP_SKILL, LEAST_SKILL, LEAST_SMOOTH_SKILL, LeftOut, MARGIN_STARTS,
@@ -189,6 +189,7 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         },
         margin(fit)
     )];
+    lines.extend(fit.supply.as_ref().map(supply));
     lines.extend(fit.shared.as_ref().map(shared));
     let all = || LOOP.iter().chain(&LIMITS);
     let open: Vec<String> = all()

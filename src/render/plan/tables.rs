@@ -185,7 +185,7 @@ fn reason(ceilings: &Ceilings, planned: &Planned) -> String {
         kept.extend(ceilings);
         format!("{} of {} within {}", choice.within, choice.of, kept.join(", "))
     } else if ceilings.is_empty() {
-        format!("all {}", choice.of)
+        "the whole front".to_owned()
     } else {
         format!("{} of {} within {}", choice.within, choice.of, ceilings.join(", "))
     };

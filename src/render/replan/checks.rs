@@ -3,9 +3,9 @@
 use std::iter;
 
 use crate::{
-    fit::{Character, LEAST_SKILL, SharedLimit},
+    fit::{Character, LEAST_SKILL, SharedLimit, Supply},
     render::{
-        fit::shared,
+        fit::{litres, shared, supply},
         kit::{Block, Check, Id, Mark, Section, Sentence, counted, mm, optional, share},
         metric::{Units, position},
     },
@@ -83,6 +83,7 @@ fn short(level: Level, finding: &Finding) -> String {
         Finding::Newest { .. } => "the newest run went wrong".to_owned(),
         Finding::TooFast(of) => format!("the plan of {} is faster than the joint", of.joint),
         Finding::Together { .. } => "the plan asks for more than what its joints share".to_owned(),
+        Finding::Supply { .. } => "the pump gives less than the plan asks for".to_owned(),
         Finding::Promise { .. } => "more error came than was promised".to_owned(),
         Finding::Outlook { .. } => "a larger error is expected".to_owned(),
         Finding::Whole { .. } => {
@@ -109,6 +110,7 @@ fn name(finding: &Finding) -> &'static str {
         Finding::Newest { .. } => "Newest run",
         Finding::TooFast(_) => "Too fast",
         Finding::Together { .. } => "Together",
+        Finding::Supply { .. } => "Supply",
         Finding::Trust { .. } => "Model",
         Finding::Promise { .. } => "Last promise",
         Finding::Outlook { .. } => "Next error",
@@ -129,6 +131,15 @@ fn together(limit: &SharedLimit, asked: f64, at_s: f64) -> String {
         "{} The plan asks for {asked:.2} times what they share, most at {at_s:.1} s: no command mends that, more time or fewer joints at \
          once do. The error that is expected next does not count it, and more comes.",
         shared(limit)
+    )
+}
+
+fn starved(found: &Supply, asked_m3_s: Option<f64>) -> String {
+    let asks =
+        asked_m3_s.map_or(String::new(), |asked| format!(" The plan asks for up to {}.", litres(asked)));
+    format!(
+        "{}{asks} No command mends that; more time or fewer joints at once do. The error that is expected next does not count it.",
+        supply(found)
     )
 }
 
@@ -159,6 +170,7 @@ fn words(level: Level, finding: &Finding, units: Units) -> String {
         ),
         Finding::Newest { why } => newest(why),
         Finding::Together { limit, asked, at_s } => together(limit, *asked, *at_s),
+        Finding::Supply { supply: found, asked_m3_s } => starved(found, *asked_m3_s),
         Finding::Trust { joints } => trust(joints),
         Finding::Promise { log, promised, measured_mean_peak_rad } => format!(
             "{log} promised a mean peak error of {}, in nine runs of ten below {}; {} came{}.",

@@ -5,6 +5,7 @@ use crate::{
     log::Topics,
     math::mean,
     render::{
+        fit::litres,
         kit::{
             Block, Column, Document, Fact, Id, NONE, Section, Sentence, Table, counted, fact, optional,
             some_of,
@@ -60,7 +61,11 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
         } else {
             "Limits that a new plan was sought under"
         };
-        document.sections.push(Section::new(Id::OTHER, of, [held]));
+        let pump = search.pump_flow_m3_s.map(|flow| {
+            Sentence::note(format!("The pump is held to {}, which it gave in three quarters of the time in which its pressure was low.", litres(flow)))
+        });
+        let section = Section::new(Id::OTHER, of, [held]);
+        document.sections.push(pump.into_iter().fold(section, Section::with));
     }
     document.remarked(&replanned.remarks)
 }

@@ -178,8 +178,14 @@ fn a_fit_shows_its_numbers_intervals_and_what_was_never_reached() {
         valve_dead_band: None,
         model,
     };
-    let fit =
-        Fit { joints: vec![joint], left_out: vec![], peak_margin: 1.25, margin_starts: 12, shared: None };
+    let fit = Fit {
+        joints: vec![joint],
+        left_out: vec![],
+        peak_margin: 1.25,
+        margin_starts: 12,
+        shared: None,
+        supply: None,
+    };
     let mut fitted = Fitted {
         fit: fit.clone(),
         held_out: vec![],

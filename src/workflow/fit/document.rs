@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{FitFailure, Fitted, FittedRun, LIMITS_FORMAT, torque::JointTorque};
 use crate::{
     document::{PROGRAM, pretty},
-    fit::{Fit, JointFit, LEAST_SKILL, LeftOut, SharedLimit},
+    fit::{Fit, JointFit, LEAST_SKILL, LeftOut, SharedLimit, Supply},
     input_file,
     remark::Remark,
     series::JointKind,
@@ -38,6 +38,9 @@ pub struct FitDocument {
     /// The limit that joints share, such as a pump, where the logs show one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shared: Option<SharedLimit>,
+    /// The supply, where its pressure was logged and fell while joints moved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub supply: Option<Supply>,
     /// Least held-out R2 for which commands are made.
     pub least_held_out_r2: f64,
     /// Doubts; any makes the exit code 3.
@@ -47,7 +50,7 @@ pub struct FitDocument {
 impl FitDocument {
     /// Of a fit.
     pub fn of(fitted: &Fitted) -> Self {
-        let Fit { joints, left_out, peak_margin, margin_starts, shared } = fitted.fit.clone();
+        let Fit { joints, left_out, peak_margin, margin_starts, shared, supply } = fitted.fit.clone();
         Self {
             format: FORMAT.to_owned(),
             program: PROGRAM.to_owned(),
@@ -58,6 +61,7 @@ impl FitDocument {
             peak_margin,
             margin_starts,
             shared,
+            supply,
             least_held_out_r2: LEAST_SKILL,
             remarks: fitted.remarks.as_slice().to_vec(),
         }

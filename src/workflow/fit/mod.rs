@@ -150,7 +150,9 @@ pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted
     let observed = observed.as_slice();
     of_one_arm(logs, observed)?;
     let observations: Vec<Observation<'_>> = observed.iter().map(|run| observation(run)).collect();
-    let (fit, held_out) = fit_and_held_out(&observations).map_err(|error| unsent(error, logs, observed))?;
+    let (mut fit, held_out) =
+        fit_and_held_out(&observations).map_err(|error| unsent(error, logs, observed))?;
+    fit.supply = torque::supply_of(observed);
     for joint in &fit.joints {
         ::log::info!(
             "{} fitted to {} samples in {} runs; {:e} rad unexplained, held-out R2 {:.3}",

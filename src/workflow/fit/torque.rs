@@ -1,9 +1,10 @@
-//! Torques of cylinders from logged pressures.
+//! Torques of cylinders, and the supply, from logged pressures.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{
     arm::{Arm, Drive},
+    fit::{Fed, Supply, supply},
     log::{Recording, SignalRole},
     math::{median, quantile},
     series::{Signal, Track},
@@ -40,6 +41,20 @@ pub fn torques(recording: &Recording) -> Vec<JointTorque> {
         torque(&arm, measured, cap, rod, pressure(SignalRole::SupplyPressure))
     };
     recording.measured.tracks.iter().filter_map(one).collect()
+}
+
+/// The supply of runs whose logs have its pressure, where it fell.
+pub(super) fn supply_of(runs: &[&Recording]) -> Option<Supply> {
+    fn pressure(run: &Recording) -> Option<&Signal> {
+        run.signals.get(&SignalRole::SupplyPressure)?.first()
+    }
+    let known: Vec<(&Recording, &Signal, Option<Arm>)> = runs
+        .iter()
+        .filter_map(|run| Some((*run, pressure(run)?, Carried::of(run).arm().and_then(Result::ok))))
+        .collect();
+    let fed =
+        known.iter().map(|(run, pressure, arm)| Fed { measured: &run.measured, pressure, arm: arm.as_ref() });
+    supply(&fed.collect::<Vec<_>>())
 }
 
 fn torque(

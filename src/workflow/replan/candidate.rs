@@ -5,7 +5,7 @@ use super::{
     command::commanded, history::History, last::Last, promised, subject::Subject, warp::Warp,
 };
 use crate::{
-    fit::{Fit, Learning, Step, TRAVELS_RAD, Trial},
+    fit::{Fit, Learning, Step, Supply, TRAVELS_RAD, Trial},
     math::range,
     plan::{PlanEvaluation, Setup},
     series::Series,
@@ -175,13 +175,13 @@ impl Maker<'_> {
 
     /// Whether joints were held back in the last run by what they share: of how they go where that is enough the run says nothing.
     fn starved(&self) -> bool {
-        asks_too_much(self.fit, &self.last.plan)
+        asks_too_much(self.fit, &self.last.plan, self.setup)
     }
 
     /// Where joints were held back, the plans that ask for no more than they share, if there are such: no correction makes up for that,
     /// and what is expected of other plans is of joints that are held back.
     pub(super) fn within_shared(&self, options: Vec<Sampled>) -> Vec<Sampled> {
-        let within = |option: &&Sampled| !asks_too_much(self.fit, &option.1);
+        let within = |option: &&Sampled| !asks_too_much(self.fit, &option.1, self.setup);
         if !self.starved() || !options.iter().any(|option| within(&option)) {
             return options;
         }
@@ -203,10 +203,11 @@ impl Maker<'_> {
 /// A plan that asks for this many times what its joints share, at an instant, hardly holds them back.
 const BRIEFLY: f64 = 1.1;
 
-/// Whether a plan asks for more than its joints share.
-pub(super) fn asks_too_much(fit: &Fit, plan: &Series) -> bool {
-    let asked = fit.shared.as_ref().and_then(|shared| shared.asked(plan));
-    asked.is_some_and(|(asked, _)| asked > BRIEFLY)
+/// Whether a plan asks for more than its joints share, or than their pump gives.
+pub(super) fn asks_too_much(fit: &Fit, plan: &Series, setup: Option<&Setup>) -> bool {
+    let shared = fit.shared.as_ref().and_then(|shared| Some(shared.asked(plan)?.0));
+    let of_pump = || Some(Supply::asked_m3_s(plan, setup?.arm())? / fit.supply?.gives_m3_s()?);
+    shared.is_some_and(|asked| asked > BRIEFLY) || of_pump().is_some_and(|asked| asked > BRIEFLY)
 }
 
 /// The first unless another is expected to be better by enough.

@@ -108,6 +108,9 @@ pub struct Commanded {
     pub series: Series,
     /// Its accelerations, rad/s², by track and sample.
     pub acceleration_rad_s2: Vec<Vec<f64>>,
+    /// Whether these are the derivatives of its speeds: samples without their motion tell them roughly, and a controller that draws
+    /// quintics through what does not fit jerks.
+    pub exact: bool,
     /// One entry a joint of the plan.
     pub joints: Vec<JointCommand>,
     /// Joints that hunt; with three or more nothing is corrected.
@@ -280,7 +283,8 @@ fn of_step(
         })
         .collect();
     let joints = joints(fit, plan, &series, &planned, &learnt, &shares)?;
-    Ok(Commanded { series, acceleration_rad_s2, joints, hunting: learnt.hunting, margins, smaller: None })
+    let hunting = learnt.hunting;
+    Ok(Commanded { series, acceleration_rad_s2, exact, joints, hunting, margins, smaller: None })
 }
 
 /// Where no limit of a joint is known, a correction accelerates it to no more than this times what its plan does, or to this,

@@ -48,6 +48,9 @@ pub struct ReplanDocument {
     pub evaluations: Option<u64>,
     /// Limits of each joint in the search.
     pub held_to: Vec<HeldTo>,
+    /// Flow of the pump that a new plan is held to, m³/s, where the runs show less than the arm says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pump_flow_m3_s: Option<f64>,
     /// The command by joint; empty without one.
     pub command: Vec<JointCommand>,
     /// How near the command comes to the limits of the task's arm.
@@ -79,6 +82,7 @@ impl ReplanDocument {
             times_s: evaluation.map(|evaluation| evaluation.times_s.clone()),
             evaluations: search.map(|search| search.evaluations),
             held_to: search.map_or_else(Vec::new, |search| search.held.clone()),
+            pump_flow_m3_s: search.and_then(|search| search.pump_flow_m3_s),
             command: command.map_or_else(Vec::new, |command| command.joints.clone()),
             command_margins: command
                 .map_or_else(Vec::new, |command| MarginEntry::all(&command.margins, &joints)),

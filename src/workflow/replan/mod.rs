@@ -56,7 +56,8 @@ pub use unclear::Unclear;
 
 use super::fit;
 use crate::{
-    fit::{Fit, JointFit},
+    arm::Arm,
+    fit::{Fit, JointFit, Supply},
     log::Recording,
     plan::{PlanEvaluation, Setup, Timing, fastest},
     remark::{Code, Remarks},
@@ -231,7 +232,11 @@ fn searched(
     let motion = last.motion();
     let (task, held) = limits::held(&request.task, &request.setup, fit, motion.as_ref());
     // The arm is that of the order; its files need not be read again.
-    let setup = Setup::new(&task, request.setup.arm().clone())?;
+    let Arm { chain, hydraulics } = request.setup.arm().clone();
+    let known = hydraulics.pump_flow_m3_s();
+    let pump_flow_m3_s = fit.supply.as_ref().and_then(Supply::gives_m3_s).filter(|flow| *flow < known);
+    let hydraulics = hydraulics.with_pump_flow_m3_s(pump_flow_m3_s.unwrap_or(known));
+    let setup = Setup::new(&task, Arm { chain, hydraulics })?;
     let start = last.times_s.as_ref().map(|times_s| setup.intervals_s(times_s)).transpose()?;
     let shaping = inputs.shape.unwrap_or_else(|| last.shaping());
     let evaluation = last.evaluation(&setup)?;
@@ -250,7 +255,7 @@ fn searched(
         found = timings(shape::roomy(ceilings))?;
         found.evaluations += before;
     }
-    if asks_too_much(fit, &last.plan) {
+    if asks_too_much(fit, &last.plan, Some(&setup)) {
         found.front = within_shared(fit, &setup, found.front)?;
     }
     let best = &found.front[..found.front.len().min(CANDIDATES)];
@@ -261,7 +266,7 @@ fn searched(
     let from = if none { some() } else { start.clone() };
     let plans = shape::shaped(&setup, best, (from.as_deref(), known), &ceilings, shaping)?;
     let retime::Timings { front, evaluations } = found;
-    Ok(Search { front, plans, shaping, evaluations, ceilings, held, evaluation })
+    Ok(Search { front, plans, shaping, evaluations, ceilings, held, pump_flow_m3_s, evaluation })
 }
 
 /// Share of the evaluations for times that a free shape begins at.
@@ -272,7 +277,7 @@ fn within_shared(fit: &Fit, setup: &Setup, front: Vec<Timing>) -> Result<Vec<Tim
     let (mut within, mut beyond) = (Vec::new(), Vec::new());
     for timing in front {
         let plan = sampled(setup, &setup.motion(&setup.times_s(&timing.interval_s))?)?;
-        if asks_too_much(fit, &plan) { beyond.push(timing) } else { within.push(timing) }
+        if asks_too_much(fit, &plan, Some(setup)) { beyond.push(timing) } else { within.push(timing) }
     }
     within.extend(beyond);
     Ok(within)

@@ -106,6 +106,8 @@ pub struct Search {
     pub ceilings: Ceilings,
     /// Limits of each joint in the search.
     pub held: Vec<HeldTo>,
+    /// What the pump gives at least, m³/s, where that is less than its arm says.
+    pub pump_flow_m3_s: Option<f64>,
     /// The last plan under the same limits.
     pub evaluation: Option<PlanEvaluation>,
 }
@@ -371,11 +373,10 @@ impl Replanned {
         }
         PlanLog {
             plan: Planned::Series(&self.plan),
-            command: self
-                .command
-                .as_ref()
-                .filter(|made| made.applied())
-                .map(|made| Command { series: &made.series, acceleration_rad_s2: &made.acceleration_rad_s2 }),
+            command: self.command.as_ref().filter(|made| made.applied()).map(|made| Command {
+                series: &made.series,
+                acceleration_rad_s2: if made.exact { &made.acceleration_rad_s2 } else { &[] },
+            }),
             arm: self.request.as_ref().map(|request| &request.setup.arm().chain),
             trajectory: self.trajectory.as_deref(),
             carried: &carried,

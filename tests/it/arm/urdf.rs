@@ -59,7 +59,16 @@ fn faults_name_element_found_and_expected() {
         (r#"xyz="1.2 0 0""#, r#"xyz="inf 0 0""#, r#"<joint "J2"> <origin>: found xyz [inf, 0.0, 0.0]"#),
         (r#"xyz="1.2 0 0""#, r#"xyz="1.2 0""#, "cannot be read"),
         ("</robot>", "", "cannot be read"),
-        (r#"parent link="base""#, r#"parent link="tool""#, "found no joint that moves"),
+        (
+            r#"parent link="base""#,
+            r#"parent link="tool""#,
+            r#"<robot>: found a ring of joints, to which nothing leads from "base": link1,"#,
+        ),
+        (
+            r#"<link name="base"/>"#,
+            r#"<link name="base"/><xacro:include filename="boom.xacro"/>"#,
+            "<xacro:include>: found xacro, which is no URDF yet",
+        ),
         (r#"<link name="base"/>"#, r#"<link name="base"/><link name="moon"/>"#, "found 2: base, moon"),
     ];
     for (from, to, expected) in cases {

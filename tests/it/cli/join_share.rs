@@ -1,6 +1,6 @@
 //! `join` of a log in which another command of the same plan was sent: the plans are so alike that each fits where another was sent.
 
-use crate::support::{clean as done, json, run_line as hydrotrace, sample, stderr, stdout};
+use crate::support::{clean as done, json, made, run_line as hydrotrace, sample, stderr, stdout};
 
 /// A folder with a plan and its run, and what these lines make of them.
 fn folder(lines: &[&str]) -> tempfile::TempDir {
@@ -12,7 +12,7 @@ fn folder(lines: &[&str]) -> tempfile::TempDir {
         "simulate plan.mcap -o run.mcap",
     ];
     for line in begun.iter().chain(lines) {
-        done(at, line);
+        made(at, line);
     }
     folder
 }

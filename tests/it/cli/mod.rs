@@ -51,6 +51,7 @@ mod sliding;
 #[cfg(unix)]
 mod spared;
 mod spellings;
+mod starved;
 mod tables;
 mod telescope;
 mod terminal;

@@ -3,7 +3,9 @@
 use std::fs;
 
 use super::replan::{check, table, with_run};
-use crate::support::{clean, fleet::small_log, json, run_line, said, sample, scratch, stderr, stdout, timed};
+use crate::support::{
+    clean, fleet::small_log, json, made, run_line, said, sample, scratch, stderr, stdout, timed,
+};
 
 #[test]
 fn a_task_that_begins_elsewhere_is_refused_and_bounds_hold_for_the_next_line() {
@@ -48,7 +50,7 @@ fn a_plan_of_another_task_is_no_next_plan_of_this_one() {
 fn a_machine_that_has_changed_is_learnt_anew() {
     let folder = with_run();
     let folder = folder.path();
-    clean(folder, "replan run.mcap --keep-plan -o next.mcap");
+    made(folder, "replan run.mcap --keep-plan -o next.mcap");
     clean(folder, "simulate next.mcap --plant position-only -o run-2.mcap --seed 2");
     clean(folder, "simulate run.mcap --plant position-only -o run-3.mcap --seed 3");
     let next = json(folder, "replan run.mcap run-2.mcap run-3.mcap --keep-plan -o next-2.mcap");
@@ -96,8 +98,8 @@ fn a_plan_that_was_sent_as_it_is_and_recorded_at_20_hz_is_no_correction() {
 fn a_careful_first_command_is_followed_by_its_rest() {
     let folder = with_run();
     let folder = folder.path();
-    clean(folder, "replan run.mcap --keep-plan --gain 0.5 -o half.mcap");
-    clean(folder, "simulate half.mcap -o run-2.mcap --seed 2");
+    made(folder, "replan run.mcap --keep-plan --gain 0.5 -o half.mcap");
+    made(folder, "simulate half.mcap -o run-2.mcap --seed 2");
     let next = json(folder, "replan run.mcap run-2.mcap --keep-plan -o rest.mcap");
     let steps = || next["command"].as_array().unwrap().iter().map(|joint| &joint["step"]);
     let rests = steps().filter(|step| step["by"] == "rest");
@@ -111,7 +113,7 @@ fn a_careful_first_command_is_followed_by_its_rest() {
     let rests = next["command"].as_array().unwrap().iter().filter(|joint| joint["step"]["by"] == "rest");
     assert!(2 * rests.count() > shares.len(), "{}", next["command"]);
     clean(folder, "simulate rest.mcap -o run-3.mcap --seed 3");
-    clean(folder, "replan run.mcap --keep-plan -o whole.mcap");
+    made(folder, "replan run.mcap --keep-plan -o whole.mcap");
     clean(folder, "simulate whole.mcap -o direct.mcap --seed 3");
     let mean = |log: &str| {
         json(folder, &format!("report {log}"))["promised"]["measured_mean_peak_rad"].as_f64().unwrap()
@@ -128,8 +130,8 @@ fn a_careful_first_command_is_followed_by_its_rest() {
 fn what_was_sent_to_another_machine_is_not_sent_again_though_no_command_came_twice() {
     let folder = with_run();
     let folder = folder.path();
-    clean(folder, "replan run.mcap --keep-plan --gain 0.5 -o next-2.mcap");
-    clean(folder, "simulate next-2.mcap -o run-2.mcap --seed 2");
+    made(folder, "replan run.mcap --keep-plan --gain 0.5 -o next-2.mcap");
+    made(folder, "simulate next-2.mcap -o run-2.mcap --seed 2");
     clean(folder, "replan run.mcap run-2.mcap --keep-plan --gain 0.5 -o next-3.mcap");
     clean(folder, "simulate next-3.mcap --plant lag-limited -o run-3.mcap --seed 3");
     let next = json(folder, "replan run.mcap run-2.mcap run-3.mcap --keep-plan -o next-4.mcap");
@@ -216,8 +218,8 @@ fn a_command_that_is_returned_to_is_not_stopped_for_what_a_later_one_promised() 
     let folder = folder.path();
     let worn = "title = 'worn'\nbase = 'default'\n[encoder]\nbacklash_deg = 0.6\n";
     fs::write(folder.join("worn.toml"), worn).unwrap();
-    clean(folder, "replan run.mcap --keep-plan -o next-1.mcap");
-    clean(folder, "simulate next-1.mcap -o run-2.mcap --seed 7");
+    made(folder, "replan run.mcap --keep-plan -o next-1.mcap");
+    made(folder, "simulate next-1.mcap -o run-2.mcap --seed 7");
     clean(folder, "replan run.mcap run-2.mcap --keep-plan -o next-2.mcap");
     clean(folder, "simulate next-2.mcap -o run-3.mcap --plant worn.toml");
     let kept = json(folder, "replan run.mcap run-2.mcap run-3.mcap --keep-plan");
@@ -267,8 +269,8 @@ fn logs_of_one_name_are_told_apart_by_their_folders() {
 fn the_line_that_fit_prints_names_every_run_of_the_plan() {
     let folder = with_run();
     let folder = folder.path();
-    clean(folder, "replan run.mcap --keep-plan -o next.mcap");
-    clean(folder, "simulate next.mcap -o run-2.mcap --seed 2");
+    made(folder, "replan run.mcap --keep-plan -o next.mcap");
+    made(folder, "simulate next.mcap -o run-2.mcap --seed 2");
     run_line(folder, "export run.mcap --csv -o all.csv");
     let text = fs::read_to_string(folder.join("all.csv")).unwrap();
     // From elsewhere on, and with every second row.

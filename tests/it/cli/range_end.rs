@@ -64,6 +64,16 @@ fn a_free_shape_keeps_each_ceiling_that_its_fastest_plan_keeps() {
 }
 
 #[test]
+fn a_key_point_a_rounding_beside_the_end_of_a_range_is_at_it() {
+    let folder = tempfile::tempdir().unwrap();
+    task(folder.path(), 20.0, "");
+    let text = fs::read_to_string(folder.path().join("task.toml")).unwrap();
+    fs::write(folder.path().join("task.toml"), text.replace("b = 80", "b = 169.9999")).unwrap();
+    let (code, text, error) = said(&hydrotrace(folder.path(), "plan task.toml --evaluations 1000"));
+    assert!(code == 3 && text.contains("ends at key point 3"), "{code}: {text}\n{error}");
+}
+
+#[test]
 fn friction_that_no_torque_has_is_told_and_a_dwell_of_zero_stops() {
     let folder = tempfile::tempdir().unwrap();
     task(folder.path(), 60.0, "dwell_s = 0\n");

@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use serde_json::Value;
 
-use crate::support::{clean, hold_to_schema, json, run_line, sample, scratch, stderr, stdout};
+use crate::support::{clean, hold_to_schema, json, made, run_line, sample, scratch, stderr, stdout};
 
 /// A folder with the sample run of task 1.
 pub(super) fn with_run() -> tempfile::TempDir {
@@ -181,8 +181,8 @@ fn a_log_without_a_task_asks_for_a_look_at_the_limits_and_a_promise_is_held_to_w
     assert_eq!(field["checks"]["verdict"], "check_first");
     assert_eq!(check(&field, "limits")["nearest"], serde_json::json!([]));
     assert_eq!(check(&field, "rest")["level"], "good", "{}", check(&field, "rest"));
-    clean(folder, "replan run.mcap --keep-plan -o next.mcap");
-    clean(folder, "simulate next.mcap -o run-2.mcap --seed 7");
+    made(folder, "replan run.mcap --keep-plan -o next.mcap");
+    made(folder, "simulate next.mcap -o run-2.mcap --seed 7");
     let second = json(folder, "replan run.mcap run-2.mcap --evaluations 1000");
     let promise = check(&second, "promise");
     assert_eq!((&promise["level"], &promise["log"]), (&"good".into(), &"run-2.mcap".into()), "{promise}");
@@ -226,8 +226,8 @@ fn of_a_machine_that_cannot_be_predicted_no_command_is_made() {
     let folder = with_run();
     let folder = folder.path();
     fs::copy(sample("tasks/task-1.toml"), folder.join("task.toml")).unwrap();
-    clean(folder, "replan run.mcap --keep-plan -o sent.mcap");
-    clean(folder, "simulate sent.mcap -o run-2.mcap");
+    made(folder, "replan run.mcap --keep-plan -o sent.mcap");
+    made(folder, "simulate sent.mcap -o run-2.mcap");
     let wanders = |joint: usize, t_s: f64, angle_rad: f64| {
         angle_rad + 0.1 * (0.02 * t_s * t_s + joint as f64).sin() * (1.7 * t_s).cos()
     };
@@ -300,8 +300,8 @@ fn a_joint_that_is_stuck_is_expected_to_stay_so_and_the_others_are_corrected() {
 fn after_corrections_that_gained_nothing_the_plan_is_sent_as_it_is() {
     let folder = with_run();
     let folder = folder.path();
-    clean(folder, "replan run.mcap --keep-plan -o sent.mcap");
-    clean(folder, "simulate sent.mcap -o run-2.mcap");
+    made(folder, "replan run.mcap --keep-plan -o sent.mcap");
+    made(folder, "simulate sent.mcap -o run-2.mcap");
     clean(folder, "replan run.mcap --keep-plan --gain 0.6 -o less.mcap");
     clean(folder, "simulate less.mcap -o run-3.mcap");
     for (run, path, by) in [("run-2.mcap", "bad-1.csv", 0.03), ("run-3.mcap", "bad-2.csv", 0.031)] {
@@ -309,12 +309,6 @@ fn after_corrections_that_gained_nothing_the_plan_is_sent_as_it_is() {
     }
     clean(folder, "simulate run.mcap -o again.mcap --seed 9");
     let line = "replan run.mcap bad-1.csv bad-2.csv again.mcap --evaluations 1000 -o next.mcap";
-    let next = json(folder, line);
-    assert_eq!(next["decision"]["because"]["why"], "failed", "{}", next["decision"]);
-    assert_eq!(next["decision"]["because"]["corrections"], 2);
-    let joints = next["command"].as_array().unwrap();
-    let corrected = |joint: &Value| joint["peak_correction_rad"].as_f64().unwrap() > 1e-6;
-    assert!(!joints.iter().any(corrected), "{joints:?}");
     let said = stdout(&run_line(folder, line));
     for part in ["Send the plan as it is", "2 corrections gained nothing", "command  is the plan"] {
         assert!(said.contains(part), "{part}: {said}");

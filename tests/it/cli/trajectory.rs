@@ -8,7 +8,7 @@ use std::path::Path;
 
 use crate::{
     log_write::decode::{Value, decode},
-    support::{clean, scratch},
+    support::{clean, json, scratch},
 };
 
 /// Joints of the controller.
@@ -97,7 +97,9 @@ fn what_is_to_be_sent_keeps_every_rule_of_the_controller() {
     clean(folder, "simulate plan.mcap -o run.mcap --plant backlash");
     clean(folder, "replan run.mcap --evaluations 1000 -o next.mcap");
     clean(folder, "replan run.mcap -o kept.mcap --keep-plan");
-    for log in ["plan.mcap", "next.mcap", "kept.mcap"] {
+    clean(folder, "export run.mcap --csv -o run.csv");
+    json(folder, "replan run.csv --task task-1.toml --keep-plan -o samples.mcap");
+    for log in ["plan.mcap", "next.mcap", "kept.mcap", "samples.mcap"] {
         let message = trajectory(&folder.join(log));
         for (rule, keeps) in RULES {
             assert!(keeps(&message), "{log}: {rule}");
@@ -108,4 +110,8 @@ fn what_is_to_be_sent_keeps_every_rule_of_the_controller() {
         assert!(first.at("velocities").numbers().iter().all(|speed| speed.abs() < 1e-12));
     }
     assert!(trajectory(&folder.join("next.mcap")) != trajectory(&folder.join("plan.mcap")));
+    // A plan that is known by its samples alone tells accelerations roughly: quintics through them jerk.
+    let accelerations =
+        |log: &str| points(&trajectory(&folder.join(log)))[0].at("accelerations").list().len();
+    assert_eq!(["kept.mcap", "samples.mcap"].map(accelerations), [JOINTS.len(), 0]);
 }

@@ -12,8 +12,10 @@ pub(crate) mod variation;
 pub(crate) mod why;
 
 use std::{
+    collections::BTreeMap,
     path::{Path, PathBuf},
     process::{Command, Output},
+    sync::{Arc, Mutex, OnceLock},
 };
 
 use serde_json::Value;
@@ -73,6 +75,25 @@ pub(crate) fn clean(folder: &Path, line: &str) -> String {
     let run = run_line(folder, line);
     assert_eq!(run.status.code(), Some(0), "{line}: {}", stderr(&run));
     stdout(&run)
+}
+
+/// Writes a file by a command that must end without remarks. What was made by the same line of the same files is copied: that
+/// the same inputs give the same bytes, other tests hold.
+pub(crate) fn made(folder: &Path, line: &str) {
+    /// By the line and the files that it names.
+    type Made = BTreeMap<(String, Vec<Vec<u8>>), Arc<OnceLock<Vec<u8>>>>;
+    static ALL: Mutex<Made> = Mutex::new(BTreeMap::new());
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let to = words.iter().position(|word| *word == "-o").map(|at| words[at + 1]).unwrap();
+    let read =
+        words.iter().filter(|word| **word != to).filter_map(|word| std::fs::read(folder.join(word)).ok());
+    let key = (line.replace(&format!("-o {to}"), ""), read.collect());
+    let made = Arc::clone(ALL.lock().unwrap().entry(key).or_default());
+    let bytes = made.get_or_init(|| {
+        clean(folder, line);
+        std::fs::read(folder.join(to)).unwrap()
+    });
+    std::fs::write(folder.join(to), bytes).unwrap();
 }
 
 /// A line as it is pasted into a shell.

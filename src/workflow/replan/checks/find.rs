@@ -46,7 +46,7 @@ pub(super) fn all(replanned: &Replanned) -> impl Iterator<Item = Check> {
         [ends(&replanned.plan, sent), rest(sent, command), limits(replanned, command), trust(replanned)];
     let others = [
         newest(replanned),
-        together(replanned).or_else(|| too_fast(replanned)),
+        super::supply::check(replanned).or_else(|| together(replanned)).or_else(|| too_fast(replanned)),
         promise(replanned),
         Some(outlook(replanned)),
         whole(replanned),

@@ -1,12 +1,13 @@
 //! "Safe to send?": what a careful person looks at before a command goes out, each finding with its level, and one verdict.
 
 mod find;
+mod supply;
 
 use serde::{Deserialize, Serialize};
 
 use super::{Overall, Replanned};
 use crate::{
-    fit::{Character, SharedLimit},
+    fit::{Character, SharedLimit, Supply},
     plan::Limit,
     series::JointKind,
     workflow::{carried::Promise, plan::MarginEntry},
@@ -117,6 +118,13 @@ pub enum Finding {
         asked: f64,
         /// When, s.
         at_s: f64,
+    },
+    /// A supply that gave less than joints asked for.
+    Supply {
+        /// What it gave.
+        supply: Supply,
+        /// The most that the plan asks the pump for, m³/s; null where cylinders are not known.
+        asked_m3_s: Option<f64>,
     },
     /// Nothing was learnt from the newest run.
     Newest {
