@@ -15,6 +15,7 @@ use super::{
         without_filtered, without_shared_words, without_speeds,
     },
     repeats::drop_repeats,
+    supply::{SUPPLY, of_supply},
     unit::{Measure, Unit},
     word::{Meaning, words},
 };
@@ -128,6 +129,10 @@ pub(super) fn lay_out(
         }
     }
     let taken = |column: &usize| uses.iter().any(|one| one.column == *column);
+    if !joints.is_empty() && !options.interfaces.contains_key(SUPPLY) {
+        let supply = of_supply(labels, |column| !taken(&column) && !explicit.contains(&column));
+        interfaces.extend(supply.map(|column| Interface { name: SUPPLY.to_owned(), column, joint: 0 }));
+    }
     let left: Vec<usize> =
         (0..labels.len()).filter(|column| odd(&labels[*column]).is_some() && !taken(column)).collect();
     if let Some(first) = left.first() {

@@ -74,6 +74,7 @@ mod spread;
 mod stamp;
 mod started;
 mod stream;
+mod supply;
 #[cfg(test)]
 mod tests;
 mod text;

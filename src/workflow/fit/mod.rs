@@ -152,7 +152,7 @@ pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted
     let observations: Vec<Observation<'_>> = observed.iter().map(|run| observation(run)).collect();
     let (mut fit, held_out) =
         fit_and_held_out(&observations).map_err(|error| unsent(error, logs, observed))?;
-    fit.supply = torque::supply_of(observed);
+    fit.supply = torque::supply_of(observed, None);
     for joint in &fit.joints {
         ::log::info!(
             "{} fitted to {} samples in {} runs; {:e} rad unexplained, held-out R2 {:.3}",

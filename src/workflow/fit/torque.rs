@@ -43,17 +43,18 @@ pub fn torques(recording: &Recording) -> Vec<JointTorque> {
     recording.measured.tracks.iter().filter_map(one).collect()
 }
 
-/// The supply of runs whose logs have its pressure, where it fell.
-pub(super) fn supply_of(runs: &[&Recording]) -> Option<Supply> {
+/// The supply of runs whose logs have its pressure, where it fell; of an arm that is given, or else of that which each log holds.
+pub(in crate::workflow) fn supply_of(runs: &[&Recording], given: Option<&Arm>) -> Option<Supply> {
     fn pressure(run: &Recording) -> Option<&Signal> {
         run.signals.get(&SignalRole::SupplyPressure)?.first()
     }
-    let known: Vec<(&Recording, &Signal, Option<Arm>)> = runs
-        .iter()
-        .filter_map(|run| Some((*run, pressure(run)?, Carried::of(run).arm().and_then(Result::ok))))
-        .collect();
-    let fed =
-        known.iter().map(|(run, pressure, arm)| Fed { measured: &run.measured, pressure, arm: arm.as_ref() });
+    let own = |run: &Recording| if given.is_none() { Carried::of(run).arm()?.ok() } else { None };
+    let known: Vec<(&Recording, &Signal, Option<Arm>)> =
+        runs.iter().filter_map(|run| Some((*run, pressure(run)?, own(run)))).collect();
+    let fed = known.iter().map(|(run, pressure, own)| {
+        let arm = given.or(own.as_ref());
+        Fed { measured: &run.measured, pressure, arm }
+    });
     supply(&fed.collect::<Vec<_>>())
 }
 

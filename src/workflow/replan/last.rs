@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{Inputs, ReplanFailure, samples::sampled};
 use crate::{
+    arm::Arm,
     log::Recording,
     plan::{PlanError, PlanEvaluation, Setup, Via},
     remark::{Code, Remarks},
@@ -60,6 +61,11 @@ pub(super) struct Last {
 }
 
 impl Last {
+    /// The arm of its task.
+    pub(super) fn arm(&self) -> Option<&Arm> {
+        self.request.as_ref().map(|request| request.setup.arm())
+    }
+
     pub(super) fn of(path: &Path, recording: &Recording, inputs: &Inputs) -> Result<Self, ReplanFailure> {
         let planned = &*bridged(&recording.planned)?;
         let [from_s, to_s] =

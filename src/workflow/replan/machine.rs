@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use super::{
-    super::fit::{self, LimitsFile, observation},
+    super::fit::{self, LimitsFile, observation, torque::supply_of},
     Inputs, ReplanFailure,
 };
 use crate::{
+    arm::Arm,
     fit::{Estimated, Fit, JointFit, Observation},
     log::Recording,
     remark::{Code, Remarks},
@@ -28,8 +29,19 @@ const fn much(kind: JointKind) -> f64 {
     }
 }
 
-/// The machine: fitted, or from a file; with the names of the logs behind it.
+/// The machine: fitted, or from a file; with the names of the logs behind it. Its supply is that of the arm of the task.
 pub(super) fn machine(
+    inputs: &Inputs,
+    logs: &[String],
+    observed: &[&Recording],
+    arm: Option<&Arm>,
+) -> Result<(Fit, Vec<String>, Remarks), ReplanFailure> {
+    let (mut fit, names, doubts) = of_runs(inputs, logs, observed)?;
+    fit.supply = supply_of(observed, arm).or(fit.supply);
+    Ok((fit, names, doubts))
+}
+
+fn of_runs(
     inputs: &Inputs,
     logs: &[String],
     observed: &[&Recording],

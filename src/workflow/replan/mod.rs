@@ -113,7 +113,7 @@ pub fn run(
     let (others, changed) = history.without_another_machine(&mut fits);
     let goes_on = history.follow(&mut fits);
     let (logs, own) = chosen(&mut (0..observed.len()).filter(|k| !others.contains(k)));
-    let (fit, fitted_to, mut remarks) = machine(inputs, &logs, &own)?;
+    let (fit, fitted_to, mut remarks) = machine(inputs, &logs, &own, last.arm())?;
     remarks.extend(doubts);
     history.remark_changes(changed, &mut remarks);
     // The fit is to what was sent, but the next command is to follow the plan.

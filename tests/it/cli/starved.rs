@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 
 use super::replan::check;
-use crate::support::{clean, json, scratch};
+use crate::support::{clean, json, sample, scratch};
 
 #[test]
 fn a_pump_that_gives_too_little_is_told_by_its_pressure_and_new_timings_are_held_to_what_it_gave() {
@@ -33,4 +33,32 @@ fn a_pump_that_gives_too_little_is_told_by_its_pressure_and_new_timings_are_held
         starts.as_array().unwrap().iter().filter_map(|start| start["peak_error"].as_f64()).fold(0.0, f64::max)
     };
     assert!(worst("slower.mcap") < 0.5 * worst("run.mcap"), "{} {}", worst("slower.mcap"), worst("run.mcap"));
+}
+
+#[test]
+fn a_pressure_of_the_supply_in_a_table_is_known_by_its_header() {
+    let folder = scratch();
+    let folder = folder.path();
+    fs::copy(sample("task-1-run.mcap"), folder.join("run.mcap")).unwrap();
+    let text = clean(folder, "export run.mcap --csv");
+    let at = text.lines().next().unwrap().split(',').position(|name| name == "time_s").unwrap();
+    for (head, falls) in [("P_supply [bar]", true), ("Systemdruck (bar)", true), ("P_tank [bar]", false)] {
+        let row = |(k, row): (usize, &str)| {
+            let t_s: f64 = row.split(',').nth(at).unwrap().parse().unwrap_or(0.0);
+            let pressure = if (7.0..13.0).contains(&t_s) { "61.5" } else { "160" };
+            format!("{row},{}\n", if k == 0 { head } else { pressure })
+        };
+        fs::write(folder.join("plc.csv"), text.lines().enumerate().map(row).collect::<String>()).unwrap();
+        let supply = json(folder, "fit plc.csv")["supply"].clone();
+        assert_eq!(supply.is_object(), falls, "{head}: {supply}");
+        if falls {
+            assert_eq!(supply["least_pa"].as_f64().map(f64::round), Some(61.5e5), "{head}: {supply}");
+            assert_eq!(supply["flow_m3_s"], Value::Null, "{head}: {supply}");
+        }
+    }
+    // Nothing in a table tells the cylinders; the task does.
+    let text = fs::read_to_string(folder.join("plc.csv")).unwrap().replace("P_tank", "P_pump");
+    fs::write(folder.join("plc.csv"), text).unwrap();
+    let next = json(folder, "replan plc.csv --task task-1.toml --keep-plan --gain 0.5");
+    assert!(check(&next, "supply")["supply"]["flow_m3_s"].is_array(), "{}", next["checks"]);
 }

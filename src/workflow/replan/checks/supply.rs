@@ -9,8 +9,8 @@ const LITTLE: f64 = 0.03;
 /// That the pressure fell, where the plan asks the pump for more than it gave, or where nothing tells that it is another plan.
 pub(super) fn check(replanned: &Replanned) -> Option<Check> {
     let supply = replanned.fit.supply?;
-    let arm = replanned.request.as_ref().map(|request| request.setup.arm());
-    let asked_m3_s = arm.and_then(|arm| Supply::asked_m3_s(&replanned.plan, arm));
+    let request = replanned.request.as_ref();
+    let asked_m3_s = request.and_then(|own| Supply::asked_m3_s(&replanned.plan, own.setup.arm()));
     let asks = asked_m3_s
         .zip(supply.gives_m3_s())
         .map_or(!replanned.retimed, |(asked, gives)| asked > (1.0 + LITTLE) * gives);
