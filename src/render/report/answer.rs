@@ -11,6 +11,7 @@ use super::{
 use crate::{
     math::median,
     render::{
+        fit::supply,
         kit::{
             Block, Document, Fact, Id, Section, Sentence, argument, command, counted, fact, late, mm, ms,
             starts_of,
@@ -44,7 +45,9 @@ pub(crate) fn answer(report: &Report, explain: bool) -> Document {
     facts.extend(worst(report));
     facts.extend(why(report));
     facts.extend(starts(replay));
-    facts.extend(astray(report));
+    // What joints do while they are starved is the supply's.
+    let starved = report.supply.as_ref().map(|found| fact("supply", supply(found)));
+    facts.extend(starved.or_else(|| astray(report)));
     facts.extend(whole(replay));
     facts.extend(verdicts(report).iter().map(|verdict| fact("limit", verdict.to_string())));
     facts.extend(doubts(report));

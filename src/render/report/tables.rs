@@ -11,6 +11,7 @@ use crate::{
     math::range,
     remark::Code,
     render::{
+        fit::supply,
         kit::{Column, Document, Fact, Id, Section, Sentence, counted, fact, ms, spark, starts_of},
         metric::{Units, position, weighed, with_unit},
         promise,
@@ -107,6 +108,7 @@ fn findings(report: &Report) -> Vec<String> {
     let kinds = replay.joints.iter().map(|joint| joint.kind);
     lines.extend(report.promised.and_then(|held| promise::sentence(&held, kinds, "")));
     lines.extend(Together::all(replay).iter().flat_map(Together::findings));
+    lines.extend(report.supply.as_ref().map(supply));
     lines.extend(replay.joints.iter().filter_map(|joint| stray(report, joint)));
     lines.extend(replay.joints.iter().filter_map(|joint| one_way(replay, joint)));
     lines.extend(report.backward().iter().map(sinks));

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Alignment, GateResult, LogFile, Report, Why, log_files};
 use crate::{
     document::PROGRAM,
+    fit::Supply,
     log::SourceInfo,
     remark::Remark,
     replay::{JointReplay, KindRun, Rules, Stop, ToolReplay, Transition, WholeRun},
@@ -31,6 +32,9 @@ pub struct Document {
     pub run: Option<String>,
     /// What the command of this run promised, beside what came; null without a promise in the log.
     pub promised: Option<Held>,
+    /// The supply, where its pressure was logged and fell while joints moved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub supply: Option<Supply>,
     /// Where the data come from.
     pub source: SourceInfo,
     /// How plan and measurement were matched, by joint.
@@ -80,6 +84,7 @@ impl Document {
             machine: report.machine.clone(),
             run: report.run.clone(),
             promised: report.promised,
+            supply: report.supply,
             source: report.source.clone(),
             alignment: report.alignment.clone(),
             joints: report.replay.joints.clone(),

@@ -40,6 +40,7 @@ use why::{Ready, Unready};
 use super::{
     carried::{Carried, PLAN, Schedule},
     correctable::uncorrectable,
+    fit::torque::supply_of,
     leads::remark_leads,
     plan::PlanDocument,
 };
@@ -103,7 +104,7 @@ impl Inputs {
             read.description = Some(input_file::read_to_string(path).map_err(failed)?);
         }
         let plotted: &[SignalRole] = if self.with_signals { &SignalRole::OF_DRIVES } else { &[] };
-        Ok(read.wanting(self.delay_model.signals()).wanting(plotted))
+        Ok(read.wanting(self.delay_model.signals()).wanting(plotted).wanting(&[SignalRole::SupplyPressure]))
     }
 }
 
@@ -123,6 +124,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
     // The rows of a table have one time.
     let no_other_clock = recording.source.time_base == TimeBase::Log || recording.source.origin.is_some();
     let [planned_s, measured_s] = sides.map(|side| side.span_s().unwrap_or_default());
+    let supply = supply_of(&[&recording], None);
     let (alignment, pairs) = aligned(taken(&mut recording), &inputs.rules, &mut remarks);
     let pairs = stretches(pairs, &inputs.stretches_s);
     if pairs.is_empty() {
@@ -190,6 +192,7 @@ pub fn report(mut recording: Recording, inputs: &Inputs) -> Result<Report, Repor
         why,
         gates,
         remarks,
+        supply,
         profiles: Profiles::of(&pairs),
         command: recording.command.filter(|_| inputs.with_signals),
         signals: if inputs.with_signals { recording.signals } else { BTreeMap::new() },

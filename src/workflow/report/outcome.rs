@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{gates::GateResult, tool::Tool, why::Why};
 use crate::{
+    fit::Supply,
     log::{Command, SignalRole, SourceInfo},
     math::range,
     remark::{Code, Remark, Remarks},
@@ -82,6 +83,8 @@ pub struct Report {
     pub gates: Vec<GateResult>,
     /// What is to be seen to before any start.
     pub fault: Option<Fault>,
+    /// The supply, where its pressure was logged and fell while joints moved.
+    pub supply: Option<Supply>,
     /// Why no command can be made from it, as far as a fit was asked for and says so.
     pub unfit: Option<String>,
     /// Why no command is corrected for its plan.

@@ -17,6 +17,8 @@ fn a_pump_that_gives_too_little_is_told_by_its_pressure_and_new_timings_are_held
     clean(folder, "simulate plan.mcap --plant small.toml -o run.mcap");
     clean(folder, "simulate plan.mcap -o sound.mcap");
     assert_eq!(json(folder, "fit sound.mcap")["supply"], Value::Null);
+    let reported = json(folder, "report run.mcap");
+    assert!(reported["supply"]["flow_m3_s"].is_array(), "{}", reported["supply"]);
     let kept = json(folder, "replan run.mcap --keep-plan --gain 0.5");
     let supply = check(&kept, "supply");
     assert_eq!(supply["level"], "caution", "{supply}");
@@ -49,7 +51,7 @@ fn a_pressure_of_the_supply_in_a_table_is_known_by_its_header() {
             format!("{row},{}\n", if k == 0 { head } else { pressure })
         };
         fs::write(folder.join("plc.csv"), text.lines().enumerate().map(row).collect::<String>()).unwrap();
-        let supply = json(folder, "fit plc.csv")["supply"].clone();
+        let supply = json(folder, "report plc.csv")["supply"].clone();
         assert_eq!(supply.is_object(), falls, "{head}: {supply}");
         if falls {
             assert_eq!(supply["least_pa"].as_f64().map(f64::round), Some(61.5e5), "{head}: {supply}");
