@@ -115,8 +115,9 @@ struct ChangeArgs {
 }
 
 impl ChangeArgs {
-    /// Options that hold for the next command, too: a task that no log holds, the machine, bounds, and what must not change.
-    fn words_of_next(&self, task: Option<&Path>, limits: Option<&Path>) -> Vec<String> {
+    /// Options that hold for the next command, too: a task that no log holds, the machine, bounds, and what must not change. A plan that was
+    /// `retimed` has taken the time that it was allowed.
+    fn words_of_next(&self, task: Option<&Path>, limits: Option<&Path>, retimed: bool) -> Vec<String> {
         let mut words = Vec::new();
         if let Some(task) = task {
             words.extend(["--task".to_owned(), kit::argument(task)]);
@@ -139,7 +140,7 @@ impl ChangeArgs {
         let growths =
             [("time", self.max_time_growth_percent, 0.0), ("cost", self.max_cost_growth_percent, 0.1)];
         for (what, share, usual) in growths {
-            if (share - usual).abs() > 1e-12 {
+            if (share - usual).abs() > 1e-12 && !(what == "time" && retimed) {
                 words.push(format!("--max-{what}-growth-percent={}", plain(100.0 * share)));
             }
         }
@@ -203,7 +204,7 @@ impl Run for Args {
         let target = Target::stdout(self.json);
         let (reading, changing) = (
             self.sent.words_of_next(),
-            self.change.words_of_next(self.task.as_deref(), self.limits.as_deref()),
+            self.change.words_of_next(self.task.as_deref(), self.limits.as_deref(), replanned.retimed),
         );
         let again = again(std::env::args_os().skip(1));
         let lines = next::Words { again: &again, reading: &reading, changing: &changing };

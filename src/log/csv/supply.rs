@@ -5,14 +5,13 @@ use super::{Role, label::Label, unit::Measure};
 /// Where our logs keep it.
 pub(super) const SUPPLY: &str = "supply_pressure_pa";
 
-/// What it is called, and what else a pressure of such a name may be.
-const CALLED: [&str; 12] = [
-    "supply", "pump", "system", "sys", "pumpe", "versorgung", "systemdruck", "pumpendruck",
-    "versorgungsdruck", "alimentation", "pompe", "bomba",
-];
-const OTHER: [&str; 15] = [
+/// What it is called; where nothing is, that of a pump is meant. And what else a pressure of such a name may be.
+const CALLED: [&str; 6] = ["supply", "system", "sys", "versorgung", "systemdruck", "versorgungsdruck"];
+const OF_PUMP: [&str; 6] = ["pump", "pumpe", "pumpendruck", "pompe", "bomba", "alimentation"];
+const OTHER: [&str; 30] = [
     "max", "min", "limit", "alarm", "warn", "pilot", "tank", "return", "filter", "delta", "diff", "control",
-    "rücklauf", "steuerdruck", "leckage",
+    "rücklauf", "steuerdruck", "leckage", "charge", "boost", "water", "cooling", "air", "brake", "suction",
+    "inlet", "case", "drain", "error", "difference", "speise", "speisedruck", "saug",
 ];
 
 /// The only free column of a pressure that is called so.
@@ -21,8 +20,12 @@ pub(super) fn of_supply(labels: &[Label], free: impl Fn(usize) -> bool) -> Optio
     let is = |label: &Label| {
         let pressure = label.unit.or(label.stated).is_some_and(|unit| unit.measure == Measure::Pressure);
         let wanted = matches!(label.role, Some(Role::Planned | Role::Command));
-        pressure && !wanted && has(label, &CALLED) && !has(label, &OTHER)
+        pressure && !wanted && !has(label, &OTHER)
     };
-    let mut found = (0..labels.len()).filter(|column| free(*column) && is(&labels[*column]));
-    found.next().filter(|_| found.next().is_none())
+    let own: Vec<usize> = (0..labels.len()).filter(|column| free(*column) && is(&labels[*column])).collect();
+    let called = |words: &[&str]| -> Vec<usize> {
+        own.iter().copied().filter(|column| has(&labels[*column], words)).collect()
+    };
+    let found = Some(called(&CALLED)).filter(|found| !found.is_empty()).unwrap_or_else(|| called(&OF_PUMP));
+    if let [column] = found[..] { Some(column) } else { None }
 }

@@ -215,13 +215,13 @@ pub(super) fn scale_by(factor: f64, name: &str) -> Option<Unit> {
 
 /// The unit that ends a name, as in `q1_deg` or `J1_planned_rad_s`, and the name without it.
 pub(super) fn split_suffix(name: &str) -> Option<(&str, Unit)> {
-    const SUFFIXES: [&str; 68] = [
+    const SUFFIXES: [&str; 71] = [
         "arcsec", "arcmin", "millideg", "centideg", "decideg", "cdeg", "ddeg", "urad", "µrad", "μrad", "um",
         "µm", "μm", "0.1deg", "0.01deg", "0.001deg", "0.1mm", "0.01mm", "rad_s", "deg_s", "mrad_s", "mm_s",
         "cm_s", "m_s", "rad", "deg", "mrad", "mdeg", "mm", "cm", "m", "ms", "us", "ns", "s", "bar", "mbar",
-        "pa", "°", "º", "min", "minutes", "h", "hours", "sec", "msec", "usec", "nsec", "nanosec", "gon",
-        "pct", "percent", "counts", "ticks", "rpm", "dps", "degps", "radps", "mps", "grad", "rev", "revs",
-        "turns", "degrees", "radians", "inch", "inches", "ft",
+        "pa", "kpa", "mpa", "psi", "°", "º", "min", "minutes", "h", "hours", "sec", "msec", "usec", "nsec",
+        "nanosec", "gon", "pct", "percent", "counts", "ticks", "rpm", "dps", "degps", "radps", "mps", "grad",
+        "rev", "revs", "turns", "degrees", "radians", "inch", "inches", "ft",
     ];
     let lower = name.to_lowercase();
     let suffix = SUFFIXES.iter().find(|suffix| {

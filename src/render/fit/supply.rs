@@ -9,7 +9,7 @@ pub(in crate::render) fn supply(found: &Supply) -> String {
         format!("; all cylinders took {:.1} to {} meanwhile, half of that time", 6e4 * low, litres(high))
     });
     format!(
-        "The pump gave less than the joints asked for together: the pressure before the valves stands at {} and fell to {}, and was low for {:.1} s \
+        "The pump gave less than the joints asked for: the pressure before the valves stands at {} and fell to {}, and was low for {:.1} s \
          of the {:.1} s in which joints moved{gave}.",
         bar(found.standing_pa),
         bar(found.least_pa),

@@ -189,8 +189,8 @@ fn trust(fitted: &Fitted) -> Vec<Sentence> {
         },
         margin(fit)
     )];
-    lines.extend(fit.supply.as_ref().map(supply));
-    lines.extend(fit.shared.as_ref().map(shared));
+    let starved = fit.supply.as_ref().map(supply);
+    lines.extend(starved.or_else(|| fit.shared.as_ref().map(shared)));
     let all = || LOOP.iter().chain(&LIMITS);
     let open: Vec<String> = all()
         .filter_map(|shown| {

@@ -138,7 +138,7 @@ fn starved(found: &Supply, asked_m3_s: Option<f64>) -> String {
     let asks =
         asked_m3_s.map_or(String::new(), |asked| format!(" The plan asks for up to {}.", litres(asked)));
     format!(
-        "{}{asks} No command mends that; more time or fewer joints at once do. The error that is expected next does not count it.",
+        "{}{asks} No command mends that; more time does, or fewer joints at once where several move. The error that is expected next does not count it.",
         supply(found)
     )
 }

@@ -62,7 +62,10 @@ pub(crate) fn document(replanned: &Replanned) -> Document {
             "Limits that a new plan was sought under"
         };
         let pump = search.pump_flow_m3_s.map(|flow| {
-            Sentence::note(format!("The pump is held to {}, which it gave in three quarters of the time in which its pressure was low.", litres(flow)))
+            Sentence::note(format!(
+                "Pump flow: {}, which it gave in three quarters of the time in which its pressure was low.",
+                litres(flow)
+            ))
         });
         let section = Section::new(Id::OTHER, of, [held]);
         document.sections.push(pump.into_iter().fold(section, Section::with));

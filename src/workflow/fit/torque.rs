@@ -53,7 +53,8 @@ pub(in crate::workflow) fn supply_of(runs: &[&Recording], given: Option<&Arm>) -
         runs.iter().filter_map(|run| Some((*run, pressure(run)?, own(run)))).collect();
     let fed = known.iter().map(|(run, pressure, own)| {
         let arm = given.or(own.as_ref());
-        Fed { measured: &run.measured, pressure, arm }
+        let sent = run.command.as_ref().map_or(&run.planned, |command| &command.series);
+        Fed { sent, measured: &run.measured, pressure, arm }
     });
     supply(&fed.collect::<Vec<_>>())
 }

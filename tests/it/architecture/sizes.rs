@@ -5,8 +5,8 @@ use super::sources;
 /// Lines of the longest file; of half the files of `src` at most; of `src` and of all Rust together.
 const LONGEST: usize = 400;
 const MEDIAN: usize = 125;
-const LIBRARY: usize = 117_500;
-const ALL: usize = 162_150;
+const LIBRARY: usize = 117_550;
+const ALL: usize = 162_200;
 
 const FOLDERS: [&str; 6] = ["src", "crates", "tests", "benches", "examples", "fuzz"];
 

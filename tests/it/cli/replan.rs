@@ -93,6 +93,8 @@ fn a_new_plan_may_have_a_free_shape_and_has_one_where_the_last_one_had() {
         if line.contains("growth") {
             let text = stdout(&run);
             assert!(text.contains("re-timed in a free shape"), "{text}");
+            // The time that was allowed is taken.
+            assert!(!text.contains("--max-time-growth-percent"), "{text}");
         }
     }
     let of = |line: &str| {

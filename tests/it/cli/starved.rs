@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::replan::check;
+use super::replan::{check, table};
 use crate::support::{clean, json, sample, scratch};
 
 #[test]
@@ -41,10 +41,16 @@ fn a_pump_that_gives_too_little_is_told_by_its_pressure_and_new_timings_are_held
 fn a_pressure_of_the_supply_in_a_table_is_known_by_its_header() {
     let folder = scratch();
     let folder = folder.path();
-    fs::copy(sample("task-1-run.mcap"), folder.join("run.mcap")).unwrap();
-    let text = clean(folder, "export run.mcap --csv");
+    fs::copy(sample("task-1-run.mcap"), folder.join("sound.mcap")).unwrap();
+    // A joint that is held for a while is behind.
+    table(folder, "sound.mcap", "held.csv", |joint, t_s, angle_rad| {
+        let held = (t_s - 7.0).clamp(0.0, 1.0) * (13.0 - t_s).clamp(0.0, 1.0);
+        if joint == 1 { angle_rad - 0.1 * held } else { angle_rad }
+    });
+    let text = fs::read_to_string(folder.join("held.csv")).unwrap();
     let at = text.lines().next().unwrap().split(',').position(|name| name == "time_s").unwrap();
-    for (head, falls) in [("P_supply [bar]", true), ("Systemdruck (bar)", true), ("P_tank [bar]", false)] {
+    for (head, falls) in [("P_supply [bar]", true), ("Systemdruck (bar)", true), ("Charge pump [bar]", false)]
+    {
         let row = |(k, row): (usize, &str)| {
             let t_s: f64 = row.split(',').nth(at).unwrap().parse().unwrap_or(0.0);
             let pressure = if (7.0..13.0).contains(&t_s) { "61.5" } else { "160" };
@@ -59,7 +65,7 @@ fn a_pressure_of_the_supply_in_a_table_is_known_by_its_header() {
         }
     }
     // Nothing in a table tells the cylinders; the task does.
-    let text = fs::read_to_string(folder.join("plc.csv")).unwrap().replace("P_tank", "P_pump");
+    let text = fs::read_to_string(folder.join("plc.csv")).unwrap().replace("Charge pump", "P_pump");
     fs::write(folder.join("plc.csv"), text).unwrap();
     let next = json(folder, "replan plc.csv --task task-1.toml --keep-plan --gain 0.5");
     assert!(check(&next, "supply")["supply"]["flow_m3_s"].is_array(), "{}", next["checks"]);
