@@ -17,8 +17,6 @@ const STANDS_OUT: f64 = 3.0;
 /// Joints that tell what is usual, at least; of steps, those of other machines.
 const FEWEST_JOINTS: usize = 10;
 const FEWEST_OF_STEPS: usize = 4;
-/// What a test of one direction counts for beside one of both.
-const OF_DIRECTION: f64 = 0.25;
 /// Half of a 95 % interval, in standard deviations.
 const SIGMAS_OF_95: f64 = 1.96;
 /// Days that are this share of others are nearly the same ones.
@@ -29,9 +27,8 @@ const RELEVANT: f64 = 0.02;
 /// Which trends and steps are found. Both are tests of the same data, so they are corrected for together.
 pub(super) fn judge(trends: &mut [JointTrend]) {
     let tell = stand_out(trends);
-    let weights = weights(trends);
-    let weighted = |p: fn(&JointTrend) -> f64| trends.iter().zip(&weights).map(move |(own, w)| p(own) / w);
-    let q = false_discovery(&weighted(|own| own.p_value).chain(weighted(p_change)).collect::<Vec<f64>>());
+    let p_trend = trends.iter().map(|trend| trend.p_value);
+    let q = false_discovery(&p_trend.chain(trends.iter().map(p_change)).collect::<Vec<f64>>());
     let (q_trend, q_change) = q.split_at(trends.len());
     // Of the two ways to change the one that chance makes more often is less sure by as much.
     let q_of = |p: fn(&JointTrend) -> Option<f64>| -> Vec<f64> {
@@ -104,13 +101,6 @@ pub(super) fn judge(trends: &mut [JointTrend]) {
             trend.levels.clear();
         }
     }
-}
-
-/// What each test counts for, one in the mean: those of one direction of starts are of what those of both are of, and many.
-fn weights(trends: &[JointTrend]) -> Vec<f64> {
-    let own = |trend: &JointTrend| if trend.direction.is_some() { OF_DIRECTION } else { 1.0 };
-    let all: f64 = trends.iter().map(own).sum();
-    trends.iter().map(|trend| own(trend) * trends.len() as f64 / all).collect()
 }
 
 fn p_step(trend: &JointTrend) -> Option<f64> {
