@@ -202,12 +202,9 @@ impl Hydraulics {
         self.pump_flow_m3_s
     }
 
-    /// With a pump that gives no more than so much, m³/s; what is no flow above zero changes nothing.
-    pub fn with_pump_flow_m3_s(mut self, most: f64) -> Self {
-        if most > 0.0 {
-            self.pump_flow_m3_s = self.pump_flow_m3_s.min(most);
-        }
-        self
+    /// With a pump that gives no more than so much, m³/s.
+    pub fn with_pump_flow_m3_s(self, most: f64) -> Self {
+        Self { pump_flow_m3_s: self.pump_flow_m3_s.min(most), ..self }
     }
 }
 

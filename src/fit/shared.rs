@@ -85,8 +85,7 @@ impl SharedLimit {
 
 /// Speed of a joint about an instant, rad/s; at rest beyond the ends.
 fn speed(track: &Track, t_s: f64) -> f64 {
-    let [before, after] = [-HALF_S, HALF_S].map(|by_s| track.held_at(t_s + by_s).position);
-    (after - before).abs() / (2.0 * HALF_S)
+    track.mean_speed(t_s, HALF_S).abs()
 }
 
 fn instants([from_s, to_s]: [f64; 2], step_s: f64) -> impl Iterator<Item = f64> {

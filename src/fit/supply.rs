@@ -84,22 +84,23 @@ pub fn supply(runs: &[Fed<'_>]) -> Option<Supply> {
     for run in runs {
         match fell(run) {
             Some(one) => found.push(one),
-            None if found.is_empty() => {}
-            None => {
-                let took = run.arm.and_then(|arm| driven(run.measured, arm)).map(|driven| {
-                    let flows = instants(run.measured).into_iter().map(|(t_s, _)| flow_m3_s(&driven, t_s));
-                    quantile(flows.collect(), 0.95)
-                });
-                let gave = quartiles(&found).map(|[low, ..]| low);
-                if took.zip(gave).is_none_or(|(took, gave)| took > MORE * gave) {
-                    found.clear();
-                }
-            }
+            None if refutes(run, &found) => found.clear(),
+            None => {}
         }
     }
     let worst = found.iter().map(|(supply, _)| *supply).max_by(|a, b| a.low_s.total_cmp(&b.low_s))?;
     let alike = |[low, _, high]: &[f64; 3]| *high <= ALIKE * low;
     Some(Supply { flow_m3_s: quartiles(&found).filter(alike), ..worst })
+}
+
+/// Whether a run in which the pressure stood took more than was found, or nothing tells what it took.
+fn refutes(run: &Fed<'_>, found: &[(Supply, Vec<f64>)]) -> bool {
+    let took = run.arm.and_then(|arm| driven(run.measured, arm)).map(|driven| {
+        let flows = instants(run.measured).into_iter().map(|(t_s, _)| flow_m3_s(&driven, t_s));
+        quantile(flows.collect(), 0.95)
+    });
+    let gave = quartiles(found).map(|[low, ..]| low);
+    took.zip(gave).is_none_or(|(took, gave)| took > MORE * gave)
 }
 
 fn quartiles(found: &[(Supply, Vec<f64>)]) -> Option<[f64; 3]> {
@@ -113,7 +114,7 @@ fn fell(run: &Fed<'_>) -> Option<(Supply, Vec<f64>)> {
     let seen = |(t_s, lasts_s): (f64, f64)| Some(Seen { t_s, lasts_s, pa: run.pressure.at(t_s)? });
     let seen: Vec<Seen> = instants(run.measured).into_iter().filter_map(seen).collect();
     let speeds: Vec<Vec<f64>> =
-        moving.iter().map(|track| seen.iter().map(|one| speed(track, one.t_s).abs()).collect()).collect();
+        moving.iter().map(|track| seen.iter().map(|one| speed(track, one.t_s)).collect()).collect();
     let top: Vec<f64> = speeds.iter().map(|speeds| quantile(speeds.clone(), 0.995)).collect();
     let moves = |k: usize| speeds.iter().zip(&top).any(|(speeds, top)| speeds[k] > MOVES * top);
     let (moves, rests): (Vec<_>, Vec<_>) = seen.iter().enumerate().partition(|(k, _)| moves(*k));
@@ -148,7 +149,7 @@ fn fell(run: &Fed<'_>) -> Option<(Supply, Vec<f64>)> {
 /// By how much of its fastest speed a joint is behind what is sent in some of the instants at which it moves, s, beyond the lag that it has
 /// in the middle.
 fn behind_s(sent: &Track, measured: &Track, [moves, some]: [&[f64]; 2]) -> f64 {
-    let fastest = quantile(moves.iter().map(|t_s| speed(sent, *t_s).abs()).collect(), 0.995);
+    let fastest = quantile(moves.iter().map(|t_s| speed(sent, *t_s)).collect(), 0.995);
     let off = |lag_s: f64, at: &[f64]| -> Vec<f64> {
         let each = at.iter().map(|t_s| sent.held_at(t_s - lag_s).position - measured.held_at(*t_s).position);
         each.map(f64::abs).collect()
@@ -185,15 +186,13 @@ fn driven<'a>(series: &'a Series, arm: &'a Arm) -> Option<Vec<(&'a Track, &'a Cy
 fn flow_m3_s(driven: &[(&Track, &Cylinder)], t_s: f64) -> f64 {
     let of = |(track, cylinder): &(&Track, &Cylinder)| {
         let at = track.held_at(t_s).position.sin_cos();
-        cylinder.actuation(at, speed(track, t_s), 0.0).flow_m3_s
+        cylinder.actuation(at, track.mean_speed(t_s, HALF_S), 0.0).flow_m3_s
     };
     driven.iter().map(of).sum()
 }
 
-/// Speed of a joint about an instant; none beyond the ends.
 fn speed(track: &Track, t_s: f64) -> f64 {
-    let [before, after] = [-HALF_S, HALF_S].map(|by_s| track.held_at(t_s + by_s).position);
-    (after - before) / (2.0 * HALF_S)
+    track.mean_speed(t_s, HALF_S).abs()
 }
 
 /// Instants of samples, and how long each stands for, s.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     csv::{CsvError, CsvOptions, LengthUnit},
     range::TimeRange,
-    write::{Topics, VALVE},
+    write::{SUPPLY, Topics, VALVE},
 };
 use crate::series::{JointKind, Quantity};
 
@@ -125,7 +125,7 @@ impl SignalRole {
             Self::Valve => (interfaces, Some(VALVE)),
             Self::CapPressure => (interfaces, Some("cap_pressure_pa")),
             Self::RodPressure => (interfaces, Some("rod_pressure_pa")),
-            Self::SupplyPressure => (interfaces, Some("supply_pressure_pa")),
+            Self::SupplyPressure => (interfaces, Some(SUPPLY)),
             Self::Effort => (measured, Some("effort")),
         };
         Selector { topic, field: field.map(str::to_owned) }

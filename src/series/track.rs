@@ -195,6 +195,12 @@ impl Track {
         self.held_after(&mut 0, t_s)
     }
 
+    /// Mean speed from so long before an instant to so long after it; none beyond the ends.
+    pub(crate) fn mean_speed(&self, t_s: f64, half_s: f64) -> f64 {
+        let [before, after] = [-half_s, half_s].map(|by_s| self.held_at(t_s + by_s).position);
+        (after - before) / (2.0 * half_s)
+    }
+
     /// As [`Track::held_at`], for a caller that walks forward in time: `cursor` makes the next look-up cheap.
     pub(crate) fn held_after(&self, cursor: &mut usize, t_s: f64) -> State {
         self.at_after(cursor, t_s).unwrap_or_else(|| {

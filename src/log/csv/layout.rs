@@ -15,11 +15,12 @@ use super::{
         without_filtered, without_shared_words, without_speeds,
     },
     repeats::drop_repeats,
-    supply::{SUPPLY, of_supply},
+    supply::of_supply,
     unit::{Measure, Unit},
     word::{Meaning, words},
 };
 use crate::{
+    log::write::SUPPLY,
     remark::{Code, Remarks},
     suggest::nearest,
 };

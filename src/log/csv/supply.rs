@@ -2,9 +2,6 @@
 
 use super::{Role, label::Label, unit::Measure};
 
-/// Where our logs keep it.
-pub(super) const SUPPLY: &str = "supply_pressure_pa";
-
 /// What it is called; where nothing is, that of a pump is meant. And what else a pressure of such a name may be.
 const CALLED: [&str; 6] = ["supply", "system", "sys", "versorgung", "systemdruck", "versorgungsdruck"];
 const OF_PUMP: [&str; 6] = ["pump", "pumpe", "pumpendruck", "pompe", "bomba", "alimentation"];

@@ -27,8 +27,8 @@ use mcap::{
 pub(in crate::log) use definition::ros2msg;
 pub use error::WriteError;
 pub use message::{ControllerState, Point};
-pub(in crate::log) use options::VALVE;
 pub use options::{Options, Role, Topics};
+pub(in crate::log) use options::{SUPPLY, VALVE};
 pub use robot::Transform;
 
 use cdr::Cdr;

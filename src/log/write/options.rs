@@ -44,6 +44,9 @@ impl Options {
 /// Name of what is sent to the valves, among the interfaces of our own logs and of `ros2_control`.
 pub(in crate::log) const VALVE: &str = "valve_command";
 
+/// That which holds the pressure before the valves, Pa.
+pub(in crate::log) const SUPPLY: &str = "supply_pressure_pa";
+
 /// Names of topics, all different. A topic appears in the log with its first message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Topics {

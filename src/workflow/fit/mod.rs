@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 mod document;
 mod failure;
 pub mod observe;
+mod supply;
 pub mod torque;
 
 pub use document::{FitDocument, LimitsFile};
@@ -27,11 +28,11 @@ use crate::{
         useless::{LeftOut, dead, stopped, twice},
     },
 };
-pub(in crate::workflow) use observe::observation;
 use {
     observe::ObserveFailure,
     torque::{JointTorque, torques},
 };
+pub(in crate::workflow) use {observe::observation, supply::supply_of};
 
 /// Format of every file with limits.
 const LIMITS_FORMAT: &str = "hydrotrace.limits.v1";
@@ -152,7 +153,7 @@ pub fn of(logs: &[String], observed: &[impl Borrow<Recording>]) -> Result<Fitted
     let observations: Vec<Observation<'_>> = observed.iter().map(|run| observation(run)).collect();
     let (mut fit, held_out) =
         fit_and_held_out(&observations).map_err(|error| unsent(error, logs, observed))?;
-    fit.supply = torque::supply_of(observed, None);
+    fit.supply = supply_of(observed, None);
     for joint in &fit.joints {
         ::log::info!(
             "{} fitted to {} samples in {} runs; {:e} rad unexplained, held-out R2 {:.3}",

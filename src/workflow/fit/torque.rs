@@ -1,10 +1,9 @@
-//! Torques of cylinders, and the supply, from logged pressures.
+//! Torques of cylinders from logged pressures.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{
     arm::{Arm, Drive},
-    fit::{Fed, Supply, supply},
     log::{Recording, SignalRole},
     math::{median, quantile},
     series::{Signal, Track},
@@ -41,22 +40,6 @@ pub fn torques(recording: &Recording) -> Vec<JointTorque> {
         torque(&arm, measured, cap, rod, pressure(SignalRole::SupplyPressure))
     };
     recording.measured.tracks.iter().filter_map(one).collect()
-}
-
-/// The supply of runs whose logs have its pressure, where it fell; of an arm that is given, or else of that which each log holds.
-pub(in crate::workflow) fn supply_of(runs: &[&Recording], given: Option<&Arm>) -> Option<Supply> {
-    fn pressure(run: &Recording) -> Option<&Signal> {
-        run.signals.get(&SignalRole::SupplyPressure)?.first()
-    }
-    let own = |run: &Recording| if given.is_none() { Carried::of(run).arm()?.ok() } else { None };
-    let known: Vec<(&Recording, &Signal, Option<Arm>)> =
-        runs.iter().filter_map(|run| Some((*run, pressure(run)?, own(run)))).collect();
-    let fed = known.iter().map(|(run, pressure, own)| {
-        let arm = given.or(own.as_ref());
-        let sent = run.command.as_ref().map_or(&run.planned, |command| &command.series);
-        Fed { sent, measured: &run.measured, pressure, arm }
-    });
-    supply(&fed.collect::<Vec<_>>())
 }
 
 fn torque(

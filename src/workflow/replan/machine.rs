@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{
-    super::fit::{self, LimitsFile, observation, torque::supply_of},
+    super::fit::{self, LimitsFile, observation, supply_of},
     Inputs, ReplanFailure,
 };
 use crate::{

@@ -233,9 +233,9 @@ fn searched(
     let (task, held) = limits::held(&request.task, &request.setup, fit, motion.as_ref());
     // The arm is that of the order; its files need not be read again.
     let Arm { chain, hydraulics } = request.setup.arm().clone();
-    let known = hydraulics.pump_flow_m3_s();
-    let pump_flow_m3_s = fit.supply.as_ref().and_then(Supply::gives_m3_s).filter(|flow| *flow < known);
-    let hydraulics = hydraulics.with_pump_flow_m3_s(pump_flow_m3_s.unwrap_or(known));
+    let gives_m3_s = fit.supply.as_ref().and_then(Supply::gives_m3_s);
+    let pump_flow_m3_s = gives_m3_s.filter(|flow| *flow > 0.0 && *flow < hydraulics.pump_flow_m3_s());
+    let hydraulics = hydraulics.with_pump_flow_m3_s(pump_flow_m3_s.unwrap_or(f64::INFINITY));
     let setup = Setup::new(&task, Arm { chain, hydraulics })?;
     let start = last.times_s.as_ref().map(|times_s| setup.intervals_s(times_s)).transpose()?;
     let shaping = inputs.shape.unwrap_or_else(|| last.shaping());

@@ -40,7 +40,7 @@ use why::{Ready, Unready};
 use super::{
     carried::{Carried, PLAN, Schedule},
     correctable::uncorrectable,
-    fit::torque::supply_of,
+    fit::supply_of,
     leads::remark_leads,
     plan::PlanDocument,
 };

@@ -14,7 +14,7 @@ use crate::log::{
     options::{ReadOptions, Selector, SignalRole, WantedSignal},
     schema::{Shape, plain_name},
     source::{Form, Table},
-    write::{Topics, VALVE},
+    write::{SUPPLY, Topics, VALVE},
 };
 use described::Described;
 pub(super) use described::Descriptions;
@@ -111,7 +111,7 @@ const INTERFACES: [(LineRole, &str); 5] = [
     (LineRole::Valve, VALVE),
     (LineRole::CapPressure, "cap_pressure_pa"),
     (LineRole::RodPressure, "rod_pressure_pa"),
-    (LineRole::SupplyPressure, "supply_pressure_pa"),
+    (LineRole::SupplyPressure, SUPPLY),
     (LineRole::Effort, "effort"),
 ];
 
